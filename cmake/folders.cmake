@@ -1,0 +1,32 @@
+# alabaster_folder(NAME FOLDER LIBRARIES... [EXCLUDE FILES...])
+# The static library alabaster_NAME of all .cpp files in FOLDER.
+function(alabaster_folder name folder)
+  cmake_parse_arguments(ARG "" "" "EXCLUDE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${folder}/*.cpp)
+  foreach(excluded IN LISTS ARG_EXCLUDE)
+    list(REMOVE_ITEM sources ${CMAKE_SOURCE_DIR}/${folder}/${excluded})
+  endforeach()
+  set(target alabaster_${name})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_link_libraries(${target} PUBLIC ${ARG_UNPARSED_ARGUMENTS} PRIVATE alabaster_options)
+    target_include_directories(${target} PUBLIC ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/src)
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${ARG_UNPARSED_ARGUMENTS})
+    target_include_directories(${target} INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/src)
+  endif()
+endfunction()
+
+# What every file of the project is compiled with.
+add_library(alabaster_options INTERFACE)
+target_compile_options(alabaster_options INTERFACE -Wall -Wextra -Wconversion)
+# g++ 12 reports string concatenation falsely (GCC bug 105329).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(alabaster_options INTERFACE -Wno-restrict)
+endif()
+# Bit-for-bit goldens: no fused multiply-add behind the source's back.
+target_compile_options(alabaster_options INTERFACE -ffp-contract=off)
+if(ALABASTER_WERROR)
+  target_compile_options(alabaster_options INTERFACE -Werror)
+endif()

@@ -1,0 +1,22 @@
+#include "cli/commands.h"
+
+#include <CLI/CLI.hpp>
+
+namespace alabaster {
+
+namespace {
+int process_exit_code = 0;
+}
+
+void add_all_commands(CLI::App& app) {
+  static_cast<void>(app);
+}
+
+int exit_code() {
+  return process_exit_code;
+}
+void set_exit_code(int code) {
+  process_exit_code = code;
+}
+
+}  // namespace alabaster

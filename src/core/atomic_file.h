@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace alabaster {
+
+/// Calls write(temporary) with a path beside `target`, then renames it to `target`: a reader sees the old
+/// file or the whole new one, never half. The temporary is removed when `write` throws. Missing parent
+/// folders are made. Throws InputError when the folder cannot be written.
+void write_file_atomically(const std::filesystem::path& target,
+                           const std::function<void(const std::filesystem::path& temporary)>& write);
+void write_text_atomically(const std::filesystem::path& target, std::string_view text);
+
+/// The whole of a file. Throws InputError when it cannot be read.
+std::string read_text(const std::filesystem::path& path);
+
+}  // namespace alabaster

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/half_edge_mesh.h"
+#include "geometry/mesh.h"
+#include "geometry/ray_scene.h"
+#include "geometry/uv_atlas.h"
+#include "scene/camera.h"
+#include "scene/lights.h"
+#include "scene/medium.h"
+#include "texture/albedo_field.h"
+#include "texture/texture.h"
+
+namespace alabaster {
+
+enum class AlphaMode { opaque, mask, blend };
+
+/// glTF's metallic-roughness material, and the medium below the surface if it has one.
+struct Material {
+  std::string name;
+  Vec4 base_colour_factor{1};
+  std::shared_ptr<const Texture> base_colour;
+  double metallic_factor = 1, roughness_factor = 1;
+  std::shared_ptr<const Texture> metallic_roughness;  // G roughness, B metallic
+  std::shared_ptr<const Texture> normal;
+  double normal_scale = 1;
+  Rgb emission;  // factor x strength, W/(sr m^2)
+  std::shared_ptr<const Texture> emissive;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  double alpha_cutoff = 0.5;
+  bool double_sided = false;
+  double ior = 1.5;
+  double transmission = 0;
+
+  std::optional<Medium> medium;                   // none: an opaque surface
+  Rgb albedo_factor{0};                           // fallback where the object has no albedo texture
+  std::string medium_reason;                      // why it became a medium or not, for `info`
+  std::shared_ptr<const Texture> subsurface_map;  // R: 0 plain diffuse .. 1 subsurface
+};
+
+/// One node's mesh: what light inside a medium may travel through.
+struct SceneObject {
+  std::string name;
+  TriangleMesh mesh;
+  UvAtlas atlas;
+  MeshReport report;
+  /// Index into Scene::materials is mesh.materials[triangle].
+  std::unique_ptr<AlbedoField> albedo;  // set when any material of the object has a medium
+  BoundingBox bounds;
+  Vec3 bounding_centre{0};  // sphere around the mesh
+  double bounding_radius = 0;
+};
+
+/// Everything a renderer reads; immutable once prepared.
+struct Scene {
+  std::string name;
+  std::vector<SceneObject> objects;
+  std::vector<Material> materials;
+  std::vector<Light> lights;
+  std::unique_ptr<Environment> environment;
+  bool environment_visible = true;
+  std::vector<Camera> cameras;  // the first is used unless one is named
+  RayScene rays;                // object ids are indices into objects
+  BoundingBox bounds;
+  std::vector<std::string> warnings;
+
+  const Material& material(const Hit& hit) const {
+    return materials[objects[hit.object].mesh.materials[hit.triangle]];
+  }
+};
+
+/// Builds atlases, albedo fields, bounds, emissive-triangle lights and the ray scene. Call once after
+/// loading.
+void prepare_scene(Scene& scene);
+
+}  // namespace alabaster

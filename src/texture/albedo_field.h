@@ -1,0 +1,32 @@
+#pragma once
+
+#include "core/rgb.h"
+#include "core/vec.h"
+#include "geometry/surface_point.h"
+
+namespace alabaster {
+
+/// Where a Gaussian of the aggregation kernel lies on the surface.
+struct KernelFootprint {
+  Vec2 uv{0};             // of its mean, set 0 of the mesh
+  Vec2 barycentric{0};    // of its mean
+  uint32_t triangle = 0;  // that holds the mean
+  double sigma = 0;       // standard deviation on the surface, m
+  Mat2 uv_from_surface{
+      0.0};  // metres in the tangent plane -> UV; the Gaussian's covariance in UV is sigma^2 J J^T
+};
+
+/// The single-scattering albedo over one object's surface: the one function that gives the albedo of a
+/// surface point, used by every model and by the reference (DESIGN section 1). Thread-safe.
+class AlbedoField {
+ public:
+  virtual ~AlbedoField() = default;
+  /// alpha at a point: bilinear at the finest level, weighted by UV coverage.
+  virtual Rgb at(const SurfacePoint& point) const = 0;
+  /// alpha averaged by a Gaussian on the surface. One pyramid lookup.
+  virtual Rgb filtered(const KernelFootprint& footprint) const = 0;
+  /// The largest alpha anywhere, per channel: bounds for sampling.
+  virtual Rgb max() const = 0;
+};
+
+}  // namespace alabaster
