@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -48,17 +50,23 @@ struct LightSample {
   double distance = 0;  // m; infinity for the environment
   Rgb radiance;         // arriving, unoccluded; for delta lights radiance / pdf is the irradiance on a facing
                         // surface
-  double pdf = 0;       // per solid angle; 1 for delta lights
-  bool delta = false;
+  double pdf = 0;       // per solid angle, times the probability of the light's choice; for delta lights the
+                        // latter alone
+  bool delta = false;   // a ray cannot find this light: no MIS
 };
 
 /// Light from far away: constant, analytic sky, or a lat-long image. Importance sampled.
 class Environment {
  public:
   virtual ~Environment() = default;
+  /// Arriving from unit `direction`.
   virtual Rgb radiance(const Vec3& direction) const = 0;
-  virtual LightSample sample(Vec2 u) const = 0;
+  /// Nothing where the environment is black.
+  virtual std::optional<LightSample> sample(Vec2 u) const = 0;
+  /// Density of sample() per solid angle, positive wherever radiance() is.
   virtual double pdf(const Vec3& direction) const = 0;
+  /// Mean over the sphere: weighs the environment against other lights.
+  virtual Rgb mean_radiance() const = 0;
 };
 
 struct SkyParameters {
@@ -67,8 +75,16 @@ struct SkyParameters {
   Vec3 direction{-0.6, 0.62, 0.5};
 };
 
-std::unique_ptr<Environment> make_constant_environment(const Rgb& radiance);
-/// ambient + key max(0, w . direction)^exponent
+/// ambient + key max(0, w . direction)^exponent; `direction` need not be unit.
 std::unique_ptr<Environment> make_sky_environment(const SkyParameters& parameters);
+std::unique_ptr<Environment> make_constant_environment(const Rgb& radiance);
+/// A latitude-longitude image, bilinear: rows from +y (top) to -y, the centre of the image shows -z and its
+/// right half +x, turned by `rotation` radians counter-clockwise about +y (seen from above). The file's R G B
+/// times `strength`. Throws InputError.
+std::unique_ptr<Environment> load_latlong_environment(const std::filesystem::path& file, double rotation,
+                                                      const Rgb& strength);
+/// The same from texels in memory: width x height, row by row, finite and >= 0.
+std::unique_ptr<Environment> make_latlong_environment(int width, int height, std::vector<Rgb> texels,
+                                                      double rotation);
 
 }  // namespace alabaster

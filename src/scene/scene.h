@@ -36,11 +36,22 @@ struct Material {
   double ior = 1.5;
   double transmission = 0;
 
-  std::optional<Medium> medium;                   // none: an opaque surface
-  Rgb albedo_factor{0};                           // fallback where the object has no albedo texture
-  std::string medium_reason;                      // why it became a medium or not, for `info`
+  std::optional<Medium> medium;  // none: an opaque surface. A medium of albedo 0 is absorbing glass
+  AlbedoSource albedo;           // read where there is a medium
+  Rgb mean_albedo{0};            // of the medium over the texture; set by prepare_scene
+  std::string medium_reason;     // why it became a medium or not, for `info`
   std::shared_ptr<const Texture> subsurface_map;  // R: 0 plain diffuse .. 1 subsurface
 };
+
+/// A texture at a point of a mesh, in the UV set the texture names; white where there is none.
+Vec4 texture_value(const std::shared_ptr<const Texture>& texture, const TriangleMesh& mesh, uint32_t triangle,
+                   Vec2 barycentric);
+
+/// Emitted radiance of a point by its material: factor x texture.
+Rgb emission(const Material& material, const TriangleMesh& mesh, uint32_t triangle, Vec2 barycentric);
+
+/// Opacity of a point by glTF's alpha mode: 1 when opaque, 0 or 1 when masked.
+double opacity(const Material& material, const TriangleMesh& mesh, uint32_t triangle, Vec2 barycentric);
 
 /// One node's mesh: what light inside a medium may travel through.
 struct SceneObject {
@@ -73,8 +84,9 @@ struct Scene {
   }
 };
 
-/// Builds atlases, albedo fields, bounds, emissive-triangle lights and the ray scene. Call once after
-/// loading.
+/// Cleans the meshes, builds atlases, albedo fields, bounds, emissive-triangle lights and the ray scene, and
+/// adds warnings. Call once when objects, materials and lights stand. Throws InputError when nothing is left
+/// to render.
 void prepare_scene(Scene& scene);
 
 }  // namespace alabaster

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/ray_scene.h"
+#include "scene/discrete_distribution.h"
+#include "scene/lights.h"
+
+namespace alabaster {
+
+struct Scene;
+
+/// A disk light met by a ray: disks are no part of the ray scene.
+struct DiskHit {
+  double t = 0;
+  Rgb radiance;
+  std::size_t light = 0;  // index into Scene::lights
+};
+
+/// Chooses a light by its estimated contribution at a point, then a direction towards it. Lights below the
+/// horizon of `normal` are left out; a normal of zero keeps all. Patch lights are never sampled: they
+/// are added through uniform_radiance(). Thread-safe; keeps a reference to the scene.
+class LightSampler {
+ public:
+  explicit LightSampler(const Scene& scene);
+
+  /// One direction. `pdf` holds the choice of the light as well. Nothing where no light can reach.
+  std::optional<LightSample> sample(const Vec3& point, const Vec3& normal, double u_choice, Vec2 u) const;
+
+  /// The density with which sample() draws `direction` from `point`, per solid angle, when the ray left for
+  /// the environment, met an emissive triangle, or met a disk. 0 where sample() never would.
+  double pdf_environment(const Vec3& point, const Vec3& normal, const Vec3& direction) const;
+  double pdf_triangle(const Vec3& point, const Vec3& normal, const Vec3& direction, const Hit& hit) const;
+  double pdf_disk(const Vec3& point, const Vec3& normal, const Vec3& direction, const DiskHit& hit) const;
+
+  /// The nearest disk light along a ray, seen from its emitting side.
+  std::optional<DiskHit> nearest_disk(const Ray& ray) const;
+  /// Radiance an emissive triangle sends against `direction`; black for others and for the back side of
+  /// single-sided materials.
+  Rgb emitted(const Hit& hit, const Vec3& direction) const;
+
+  /// Sum of the patch lights' radiances at a surface point: incident from the whole hemisphere, unoccluded. A
+  /// dielectric surface takes in E = pi c L of it (DESIGN section 1).
+  Rgb uniform_radiance(const Vec3& point) const;
+
+  bool has_lights() const { return !entries_.empty(); }
+
+ private:
+  enum class Kind : uint8_t { environment, delta, disk, triangles };
+  struct Entry {
+    Kind kind;
+    std::size_t light = 0;  // index into Scene::lights; unused for environment and triangles
+  };
+  double weight(const Entry& entry, const Vec3& point, const Vec3& normal) const;
+  double total_weight(const Vec3& point, const Vec3& normal) const;
+  /// Probability that the entry of that kind (and light) is chosen at the point.
+  double choice_probability(Kind kind, std::size_t light, const Vec3& point, const Vec3& normal) const;
+  std::optional<LightSample> sample_entry(const Entry& entry, const Vec3& point, Vec2 u) const;
+  std::optional<LightSample> sample_triangle(const Vec3& point, Vec2 u) const;
+  std::optional<LightSample> sample_disk(const DiskLight& disk, const Vec3& point, Vec2 u) const;
+
+  const Scene& scene_;
+  std::vector<Entry> entries_;
+  std::vector<std::size_t> patches_, disks_;
+  double environment_power_ = 0;  // pi x mean radiance
+  std::vector<TriangleLight> triangles_;
+  DiscreteDistribution triangle_choice_;
+  std::vector<std::vector<uint32_t>> triangle_slot_;  // per object, per triangle: index or no_index
+  double triangle_power_ = 0;                         // W, mean over channels
+  Vec3 triangle_centre_{0};
+  double triangle_radius_ = 0;
+};
+
+}  // namespace alabaster
