@@ -53,9 +53,10 @@ class RayScene {
 
   std::optional<Hit> nearest(const Ray& ray, double random = 0) const;
   bool occluded(const Ray& ray, double random = 0) const;
-  /// Every hit with one object along the segment, front and back faces, in one traversal, unsorted; a hit on
-  /// an edge that two triangles share is reported once. `hits` is cleared first; its capacity is reused.
-  void all_hits(uint32_t object, const Ray& ray, std::vector<Hit>& hits) const;
+  /// Every hit with one object along the segment, front and back faces, in one traversal, unsorted; where
+  /// the ray crosses the surface on an edge or corner that triangles share, that is one hit. `hits` is
+  /// cleared first; its capacity is reused.
+  void all_hits(uint32_t object, const Ray& ray, std::vector<Hit>& hits, double random = 0) const;
   /// The closest point of one object's surface within `radius`; nothing if there is none.
   std::optional<ClosestPoint> closest_point(uint32_t object, const Vec3& p,
                                             double radius = std::numeric_limits<double>::infinity()) const;

@@ -1,0 +1,226 @@
+#include "geometry/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace alabaster {
+
+namespace {
+
+/// Zero for a zero or non-finite vector, so that a broken triangle spreads no NaN.
+Vec3 unit_or_zero(const Vec3& v) {
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0) || !std::isfinite(largest)) return Vec3(0);
+  const Vec3 scaled = v / largest;  // no overflow or underflow in the square
+  return scaled / glm::length(scaled);
+}
+
+/// Twice the area times the normal.
+Vec3 area_vector(const TriangleMesh& mesh, std::size_t triangle) {
+  const Index3& c = mesh.corners[triangle];
+  const Vec3& a = mesh.positions[c[0]];
+  return glm::cross(mesh.positions[c[1]] - a, mesh.positions[c[2]] - a);
+}
+
+/// In double, whatever the array stores.
+template <class Double, class Stored>
+Double interpolate(const std::vector<Stored>& values, const Index3& index, Vec2 barycentric) {
+  return Double(values[index[0]]) * (1 - barycentric.x - barycentric.y) +
+         Double(values[index[1]]) * barycentric.x + Double(values[index[2]]) * barycentric.y;
+}
+
+std::size_t attribute_count(const TriangleMesh& mesh) {
+  std::size_t count = std::max({mesh.normals.size(), mesh.tangents.size(), mesh.colours.size()});
+  for (const auto& set : mesh.uv_sets) count = std::max(count, set.size());
+  for (const Index3& index : mesh.attributes)
+    for (const uint32_t i : index) count = std::max(count, std::size_t{i} + 1);
+  return count;
+}
+
+/// Makes `attributes` exist and every attribute array that is there equally long; returns that length.
+std::size_t prepare_attributes(TriangleMesh& mesh) {
+  if (mesh.attributes.size() != mesh.corners.size()) mesh.attributes = mesh.corners;
+  const std::size_t count = attribute_count(mesh);
+  mesh.normals.resize(count, Vec3f(0));
+  for (auto& set : mesh.uv_sets) set.resize(count, Vec2f(0));
+  if (!mesh.tangents.empty()) mesh.tangents.resize(count, Vec4f(0));
+  if (!mesh.colours.empty()) mesh.colours.resize(count, Vec4f(1));
+  return count;
+}
+
+/// Appends a copy of one attribute and returns its index.
+uint32_t duplicate_attribute(TriangleMesh& mesh, uint32_t attribute) {
+  const auto index = static_cast<uint32_t>(mesh.normals.size());
+  const auto append = [attribute](auto& array) {
+    if (array.empty()) return;
+    const auto value = array[attribute];  // by value: the array may move
+    array.push_back(value);
+  };
+  append(mesh.normals);
+  for (auto& set : mesh.uv_sets) append(set);
+  append(mesh.tangents);
+  append(mesh.colours);
+  return index;
+}
+
+}  // namespace
+
+Vec3 TriangleMesh::position(uint32_t triangle, Vec2 barycentric) const {
+  return interpolate<Vec3>(positions, corners[triangle], barycentric);
+}
+
+Vec3 TriangleMesh::geometric_normal(uint32_t triangle) const {
+  return unit_or_zero(area_vector(*this, triangle));
+}
+
+double TriangleMesh::area(uint32_t triangle) const {
+  return 0.5 * glm::length(area_vector(*this, triangle));
+}
+
+Vec2 TriangleMesh::uv(uint32_t triangle, Vec2 barycentric, std::size_t set) const {
+  if (set >= uv_sets.size() || uv_sets[set].empty()) return Vec2(0);
+  return interpolate<Vec2>(uv_sets[set], attributes[triangle], barycentric);
+}
+
+SurfacePoint TriangleMesh::surface_point(uint32_t triangle, Vec2 barycentric) const {
+  SurfacePoint point;
+  point.triangle = triangle;
+  point.barycentric = barycentric;
+  point.position = position(triangle, barycentric);
+  point.geometric_normal = geometric_normal(triangle);
+  point.shading_normal = point.geometric_normal;
+  if (!normals.empty()) {
+    const Vec3 smooth = unit_or_zero(interpolate<Vec3>(normals, attributes[triangle], barycentric));
+    if (smooth != Vec3(0))
+      point.shading_normal = glm::dot(smooth, point.geometric_normal) < 0 ? -smooth : smooth;
+  }
+  point.uv = uv(triangle, barycentric);
+  return point;
+}
+
+BoundingBox bounding_box(const TriangleMesh& mesh) {
+  BoundingBox box;
+  for (const Index3& triangle : mesh.corners)
+    for (const uint32_t corner : triangle) box.extend(mesh.positions[corner]);
+  return box;
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (uint32_t t = 0; t < mesh.triangle_count(); ++t) sum += mesh.area(t);
+  return sum;
+}
+
+double enclosed_volume(const TriangleMesh& mesh) {
+  if (mesh.corners.empty()) return 0;
+  // Tetrahedra over a point of the mesh: over the far-away origin they would cancel badly.
+  const Vec3 apex = mesh.positions[mesh.corners[0][0]];
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    sum += glm::dot(mesh.positions[mesh.corners[t][0]] - apex, area_vector(mesh, t));
+  return sum / 6;
+}
+
+void compute_smooth_normals(TriangleMesh& mesh) {
+  prepare_attributes(mesh);
+  std::vector<Vec3> sums(mesh.positions.size(), Vec3(0));
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 weight = area_vector(mesh, t);
+    if (!(length_squared(weight) >= 0)) continue;
+    for (const uint32_t corner : mesh.corners[t]) sums[corner] += weight;
+  }
+  // An attribute that two positions share needs a normal for each.
+  std::vector<uint32_t> position_of(mesh.normals.size(), no_index);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      uint32_t& attribute = mesh.attributes[t][k];
+      const uint32_t corner = mesh.corners[t][k];
+      if (position_of[attribute] != no_index && position_of[attribute] != corner) {
+        attribute = duplicate_attribute(mesh, attribute);
+        position_of.push_back(no_index);
+      }
+      position_of[attribute] = corner;
+      const Vec3 normal = unit_or_zero(sums[corner]);
+      mesh.normals[attribute] = Vec3f(normal != Vec3(0) ? normal : Vec3(0, 0, 1));
+    }
+}
+
+void compute_flat_normals(TriangleMesh& mesh) {
+  prepare_attributes(mesh);
+  std::vector<bool> taken(mesh.normals.size(), false);
+  for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Vec3 geometric = mesh.geometric_normal(t);
+    const Vec3f normal(geometric != Vec3(0) ? geometric : Vec3(0, 0, 1));
+    for (uint32_t& attribute : mesh.attributes[t]) {
+      if (taken[attribute] && mesh.normals[attribute] != normal) {
+        attribute = duplicate_attribute(mesh, attribute);
+        taken.push_back(false);
+      }
+      taken[attribute] = true;
+      mesh.normals[attribute] = normal;
+    }
+  }
+}
+
+namespace {
+
+/// dP/du of a triangle, weighted by its area in space, and whether its UVs are mirrored; zero where the UVs
+/// have no area.
+struct TriangleTangent {
+  Vec3 direction{0};
+  bool mirrored = false;
+};
+
+TriangleTangent triangle_tangent(const TriangleMesh& mesh, std::size_t t, std::size_t set) {
+  const Index3 &c = mesh.corners[t], &a = mesh.attributes[t];
+  const Vec3 e1 = mesh.positions[c[1]] - mesh.positions[c[0]],
+             e2 = mesh.positions[c[2]] - mesh.positions[c[0]];
+  const Vec2 base(mesh.uv_sets[set][a[0]]);
+  const Vec2 d1 = Vec2(mesh.uv_sets[set][a[1]]) - base, d2 = Vec2(mesh.uv_sets[set][a[2]]) - base;
+  const double determinant = d1.x * d2.y - d1.y * d2.x;
+  if (determinant == 0 || !std::isfinite(determinant)) return {};
+  const Vec3 direction = unit_or_zero((e1 * d2.y - e2 * d1.y) * (determinant < 0 ? -1.0 : 1.0));
+  // glTF's v runs downwards in the image, so an unmirrored triangle has a negative determinant in UV space.
+  return {direction * glm::length(glm::cross(e1, e2)), determinant > 0};
+}
+
+Vec3 any_perpendicular(const Vec3& n) {
+  return unit_or_zero(std::abs(n.x) > 0.5 ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
+}
+
+}  // namespace
+
+void compute_tangents(TriangleMesh& mesh, std::size_t set) {
+  const std::size_t count = prepare_attributes(mesh);
+  mesh.tangents.assign(count, Vec4f(0));
+  const bool has_uv = set < mesh.uv_sets.size() && !mesh.uv_sets[set].empty();
+  std::vector<Vec3> sums(count, Vec3(0));
+  std::vector<int8_t> handedness(count, 0);
+  std::vector<uint32_t> mirrored_twin(count, no_index);
+  for (std::size_t t = 0; has_uv && t < mesh.triangle_count(); ++t) {
+    const TriangleTangent tangent = triangle_tangent(mesh, t, set);
+    if (tangent.direction == Vec3(0)) continue;
+    const int8_t hand = tangent.mirrored ? -1 : 1;
+    for (uint32_t& attribute : mesh.attributes[t]) {
+      if (handedness[attribute] != 0 && handedness[attribute] != hand) {
+        // The two sides of a mirror seam share this attribute: the other side gets its own.
+        if (mirrored_twin[attribute] == no_index) {
+          const uint32_t twin = duplicate_attribute(mesh, attribute);
+          mirrored_twin[attribute] = twin;
+          sums.push_back(Vec3(0)), handedness.push_back(0), mirrored_twin.push_back(no_index);
+        }
+        attribute = mirrored_twin[attribute];
+      }
+      handedness[attribute] = hand;
+      sums[attribute] += tangent.direction;
+    }
+  }
+  for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+    const Vec3 normal = unit_or_zero(Vec3(mesh.normals[i]));
+    const Vec3 projected = unit_or_zero(sums[i] - normal * glm::dot(normal, sums[i]));
+    const Vec3 tangent = projected != Vec3(0) ? projected : any_perpendicular(normal);
+    mesh.tangents[i] = Vec4f(Vec3f(tangent), handedness[i] < 0 ? -1.0f : 1.0f);
+  }
+}
+
+}  // namespace alabaster
