@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,5 +46,23 @@ class Image {
   std::vector<std::string> names_;
   std::vector<std::vector<float>> planes_;
 };
+
+/// Where a picture's colour stands among the channels of an image.
+struct ColourChannels {
+  std::array<int, 3> rgb{-1, -1, -1};  // all three the same for a grey picture
+  int alpha = -1;                      // -1 if there is none
+  std::string layer;                   // "ViewLayer.Combined"; empty for plain R, G, B
+
+  Rgb get(const Image& image, int x, int y) const {
+    return {image.at(rgb[0], x, y), image.at(rgb[1], x, y), image.at(rgb[2], x, y)};
+  }
+};
+
+/// R, G, B (and A) of one layer, "" for the channels without a prefix; nothing when one of R, G, B is
+/// missing.
+std::optional<ColourChannels> find_layer(const Image& image, const std::string& layer);
+/// The picture in an image of any renderer: plain R G B, else a layer called Combined, Beauty or Color, else
+/// the first layer with R, G and B that is not auxiliary (variance, albedo, normal ...), else grey (Y).
+std::optional<ColourChannels> find_colour(const Image& image);
 
 }  // namespace alabaster
