@@ -29,6 +29,7 @@ TEST_CASE("no include runs up or across the floors") {
   for (const auto& [folder, floor] : floor_of_folder) {
     const fs::path place =
         folder == "geometry" || folder == "integrators" ? root / folder : root / "src" / folder;
+    if (!fs::exists(place)) continue;  // a folder that has no files yet
     for (const auto& entry : fs::recursive_directory_iterator(place)) {
       if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
       std::ifstream file(entry.path());
