@@ -1,5 +1,10 @@
 #pragma once
 
+#include <memory>
+#include <string_view>
+
+#include "bssrdf/distance_table.h"
+#include "bssrdf/kernel_placement.h"
 #include "core/rgb.h"
 #include "geometry/surface_point.h"
 #include "optics/profile_table.h"
@@ -26,21 +31,45 @@ struct BssrdfMedium {
 /// Thread-safe.
 class Bssrdf {
  public:
-  explicit Bssrdf(const BssrdfMedium& medium) : medium_(medium) {}
+  explicit Bssrdf(const BssrdfMedium& medium);
   virtual ~Bssrdf() = default;
 
   /// S_V per channel, 1/m^2. Finite for distance > 0.
   virtual Rgb evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const = 0;
 
+  /// The albedo a typical evaluation for this exit sees: what sampling should be aimed at. 0 in a channel
+  /// only where S_V is 0 for every entry.
+  virtual Rgb typical_albedo(const BssrdfPoint& exit) const { return exit.albedo; }
+
   /// Draws a distance from the exit, m, for one channel, u in [0, 1).
-  virtual double sample_distance(const BssrdfPoint& exit, int channel, double u) const;
+  double sample_distance(const BssrdfPoint& exit, int channel, double u) const;
   /// Density of sample_distance per metre; positive for every distance > 0.
-  virtual double pdf_distance(const BssrdfPoint& exit, int channel, double distance) const;
+  double pdf_distance(const BssrdfPoint& exit, int channel, double distance) const;
 
   const BssrdfMedium& medium() const { return medium_; }
+  const DistanceTable& distances() const { return distances_; }
 
  protected:
+  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha. Equal channels are
+  /// computed once.
+  Rgb basis_over_albedo(const Rgb& albedo, double distance) const;
+
   BssrdfMedium medium_;
+
+ private:
+  DistanceTable distances_;
 };
+
+/// What the models may be told; each reads what concerns it.
+struct BssrdfOptions {
+  const KernelPlacement* placement = nullptr;  // aggregate, composite: required; outlives the model
+  double ellipse_width = 1;                    // aggregate: see aggregate.h
+  int ellipse_samples = 0;  // aggregate: Monte Carlo with so many samples (at most 64); 0: pyramid taps
+};
+
+/// A model by name: homogeneous, factorized, aggregate, composite, or a variant: composite:symmetric
+/// (reciprocal kernel), composite:order1 (order 1 apart). Throws InputError for any other name.
+std::unique_ptr<Bssrdf> make_bssrdf(std::string_view name, const BssrdfMedium& medium,
+                                    const BssrdfOptions& options);
 
 }  // namespace alabaster

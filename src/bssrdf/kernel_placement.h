@@ -1,28 +1,32 @@
 #pragma once
 
-#include <array>
+#include <span>
 
 #include "geometry/surface_point.h"
 #include "texture/albedo_field.h"
 
 namespace alabaster {
 
-/// [EK17] eq. 1: three isotropic Gaussians with weights w = t = {4, 2, 1}/7, means x_i + t_k (x_e - x_i),
-/// standard deviations t_k d.
-struct AggregationKernel {
-  static constexpr std::array<double, 3> t{4.0 / 7, 2.0 / 7, 1.0 / 7};
-  static constexpr std::array<double, 3> weight{4.0 / 7, 2.0 / 7, 1.0 / 7};
+/// One isotropic Gaussian (or, with sigma 0, one sample) of an aggregation kernel, in the frame of a pair:
+/// lengths are fractions of the distance d between entry and exit.
+struct KernelTap {
+  double along = 0;   // 0 at the entry, 1 at the exit
+  double across = 0;  // sideways, in the surface
+  double sigma = 0;   // standard deviation
+  double weight = 1;
 };
 
-/// Answers: for (x_i, x_e) on the mesh, where in the UV atlas lies a point at fraction t of the way from
-/// entry to exit, and what is a Gaussian's footprint there. Approximations are interchangeable; on a plane
-/// all agree with [EK17] exactly. Thread-safe.
+/// Answers: for (x_i, x_e) on the mesh, where in the UV atlas does each tap of a kernel lie, and what is its
+/// footprint there. Approximations are interchangeable; on a plane all agree with [EK17] eq. 1 exactly.
+/// Thread-safe.
 class KernelPlacement {
  public:
   virtual ~KernelPlacement() = default;
-  /// Fills one footprint per t; sigma is t * distance along the surface.
-  virtual void place(const SurfacePoint& entry, const SurfacePoint& exit, const std::array<double, 3>& t,
-                     std::array<KernelFootprint, 3>& footprints) const = 0;
+  /// Fills footprints[k] for taps[k]; the spans are equally long. `distance` is |x_e - x_i|, m, > 0.
+  virtual void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+                     std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const = 0;
+  /// A Gaussian around one point; `sigma` in metres.
+  virtual KernelFootprint around(const SurfacePoint& point, double sigma) const = 0;
 };
 
 }  // namespace alabaster

@@ -1,0 +1,65 @@
+#include "bssrdf/bssrdf.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "bssrdf/aggregate.h"
+#include "bssrdf/composite.h"
+#include "bssrdf/factorized.h"
+#include "bssrdf/homogeneous.h"
+#include "core/error.h"
+
+namespace alabaster {
+
+Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium.profile) {
+  assert(medium.profile != nullptr && medium.albedo != nullptr && medium.sigma_t.min() > 0);
+}
+
+Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, double distance) const {
+  const Rgb& sigma_t = medium_.sigma_t;
+  const auto channel = [&](int c) {
+    return sigma_t[c] * sigma_t[c] * medium_.profile->evaluate_over_albedo(albedo[c], sigma_t[c] * distance);
+  };
+  const double r = channel(0);
+  const double g = sigma_t.g == sigma_t.r && albedo.g == albedo.r ? r : channel(1);
+  const double b = sigma_t.b == sigma_t.g && albedo.b == albedo.g ? g : channel(2);
+  return {r, g, b};
+}
+
+// Half of the draws follow the exit's albedo, half the largest anywhere: a dark exit amid bright surroundings
+// would otherwise starve of the distances that matter there.
+double Bssrdf::sample_distance(const BssrdfPoint& exit, int channel, double u) const {
+  const bool local = u < 0.5;
+  const double albedo = local ? exit.albedo[channel] : medium_.albedo->max()[channel];
+  const double rest = local ? 2 * u : 2 * u - 1;
+  return distances_.sample(DistanceTable::level(albedo), rest) / medium_.sigma_t[channel];
+}
+
+double Bssrdf::pdf_distance(const BssrdfPoint& exit, int channel, double distance) const {
+  const double sigma_t = medium_.sigma_t[channel], rho = sigma_t * distance;
+  const int local = DistanceTable::level(exit.albedo[channel]);
+  const int brightest = DistanceTable::level(medium_.albedo->max()[channel]);
+  return 0.5 * sigma_t * (distances_.pdf(local, rho) + distances_.pdf(brightest, rho));
+}
+
+std::unique_ptr<Bssrdf> make_bssrdf(std::string_view name, const BssrdfMedium& medium,
+                                    const BssrdfOptions& options) {
+  if (name == "homogeneous") return std::make_unique<HomogeneousBssrdf>(medium);
+  if (name == "factorized") return std::make_unique<FactorizedBssrdf>(medium);
+  const auto placement = [&]() -> const KernelPlacement& {
+    assert(options.placement != nullptr);
+    return *options.placement;
+  };
+  if (name == "aggregate")
+    return std::make_unique<AggregateBssrdf>(medium, placement(), options.ellipse_width,
+                                             options.ellipse_samples);
+  if (name == "composite") return std::make_unique<CompositeBssrdf>(medium, placement());
+  if (name == "composite:symmetric")
+    return std::make_unique<CompositeBssrdf>(medium, placement(), CompositeBssrdf::Kernel::symmetric);
+  if (name == "composite:order1") return std::make_unique<OrderOneApartBssrdf>(medium, placement());
+  throw InputError(
+      "there is no model \"" + std::string(name) +
+      "\"; use homogeneous, factorized, aggregate, composite, composite:symmetric or composite:order1");
+}
+
+}  // namespace alabaster

@@ -1,0 +1,61 @@
+#include "bssrdf/composite.h"
+
+#include <algorithm>
+
+#include "bssrdf/aggregation_kernel.h"
+#include "bssrdf/surroundings.h"
+
+namespace alabaster {
+namespace {
+
+/// alpha_i alpha_e / alpha_t; 0 where any of them is 0. On a constant texture the factors cancel up to
+/// rounding.
+double local_factor(double entry, double exit, double between) {
+  return between > 0 ? entry * (exit / between) : 0;
+}
+
+Rgb local_factor(const Rgb& entry, const Rgb& exit, const Rgb& between) {
+  return {local_factor(entry.r, exit.r, between.r), local_factor(entry.g, exit.g, between.g),
+          local_factor(entry.b, exit.b, between.b)};
+}
+
+}  // namespace
+
+CompositeBssrdf::CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement, Kernel kernel)
+    : Bssrdf(medium), placement_(placement), taps_(ek17_kernel) {
+  if (kernel == Kernel::symmetric) taps_ = symmetric_ek17_kernel;
+}
+
+Rgb CompositeBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+  if ((entry.albedo * exit.albedo).is_black()) return {};
+  const double distance = glm::distance(entry.surface.position, exit.surface.position);
+  const Rgb between =
+      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, distance, taps_);
+  return local_factor(entry.albedo, exit.albedo, between) * basis_over_albedo(between, distance);
+}
+
+Rgb CompositeBssrdf::typical_albedo(const BssrdfPoint& exit) const {
+  if (exit.albedo.is_black()) return {};
+  Rgb around = albedo_around(medium_, placement_, exit);
+  for (int c = 0; c < 3; ++c)
+    if (exit.albedo[c] == 0) around[c] = 0;
+  return around;
+}
+
+OrderOneApartBssrdf::OrderOneApartBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement)
+    : Bssrdf(medium), placement_(placement) {}
+
+Rgb OrderOneApartBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+  const double distance = glm::distance(entry.surface.position, exit.surface.position);
+  const Rgb between =
+      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, distance, ek17_kernel);
+  const Rgb once = basis_over_albedo(Rgb(0), distance);
+  const Rgb more = basis_over_albedo(between, distance) - once;
+  return between * once + local_factor(entry.albedo, exit.albedo, between) * more;
+}
+
+Rgb OrderOneApartBssrdf::typical_albedo(const BssrdfPoint& exit) const {
+  return albedo_around(medium_, placement_, exit);
+}
+
+}  // namespace alabaster

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bssrdf/area_sampler.h"
+#include "bssrdf/bssrdf.h"
+#include "core/sampler.h"
+#include "geometry/mesh.h"
+#include "geometry/ray_scene.h"
+
+namespace alabaster {
+
+/// The surface that light may enter through: those triangles of one object that bound the exit's medium.
+struct ProbeTarget {
+  const RayScene* rays = nullptr;
+  const TriangleMesh* mesh = nullptr;
+  uint32_t object = 0;  // the mesh's id in `rays`
+  /// One flag per material index of the mesh: whether it bounds this medium. Empty: all do.
+  std::vector<uint8_t> material_in_medium;
+};
+
+/// Random numbers of one draw, uniform in [0, 1).
+struct EntryRandom {
+  Vec2 choice{0};  // x: strategy, axis, channel; y: far part of the chord, hit
+  Vec2 disk{0};    // radius, angle
+  Vec2 area{0};    // a point of the object, for that strategy
+};
+
+/// Where light may have entered, with the weight that makes sums of weight * E(entry) unbiased for the
+/// integral of S_V(entry, exit) E(entry) over the surface.
+struct EntrySample {
+  BssrdfPoint point;
+  Rgb weight;
+  double density = 0;  // expected number of entries per square metre of a draw, all strategies
+};
+
+/// A chord to be searched for entries.
+struct Probe {
+  Ray ray;  // unit direction, from 0 to t_max
+};
+
+/// Draws entry points for an exit: a probe ray along one of three axes through a disk around the exit, whose
+/// radius follows the profile, or a point uniform by area. Every strategy's density is known at every point
+/// of the surface, so all are combined by the balance heuristic (Veach 1997), and the density is positive
+/// wherever S_V is. Thread-safe; no heap allocation per draw once a thread's hit list has grown.
+class ProbeSampler {
+ public:
+  /// `model` and what `target` points to outlive the sampler.
+  ProbeSampler(const Bssrdf& model, ProbeTarget target);
+
+  /// What draws need of an exit, computed once.
+  struct Exit {
+    /// Radii around an axis: one channel at one albedo.
+    struct Component {
+      int level = 0;       // of the distance table
+      double sigma_t = 0;  // 1/m
+      double probability = 0;
+      double reach = 1;  // the part of the distribution within radius_limit
+    };
+    BssrdfPoint point;
+    std::array<Vec3, 3> axes;
+    std::array<Component, 6> components;
+    int component_count = 0;
+    double radius_limit = 0;      // m: no point of the object lies farther
+    double near_limit = 0;        // m: beyond it along the chord, only some probes look
+    double area_probability = 0;  // of the area strategy
+  };
+  /// Nothing where no light can leave, because the albedo is 0.
+  std::optional<Exit> prepare(const BssrdfPoint& exit) const;
+
+  /// Chooses a probe without tracing it; `choice` in [0, 1) picks axis and component. Nothing when the chord
+  /// misses the object's bounding sphere.
+  std::optional<Probe> choose(const Exit& exit, Vec2 choice, Vec2 disk) const;
+  /// Expected number of entries per square metre at `entry` of one draw, all strategies summed.
+  double density(const Exit& exit, const SurfacePoint& entry) const;
+
+  /// Draws ONE entry among all hits of the probe, so that one shadow ray serves it. Nothing when there is
+  /// none: then the estimate is 0.
+  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const EntryRandom& u) const;
+  /// The same with the sampler's dimensions; `occurrence` tells draws for one pixel sample apart.
+  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
+                                          uint32_t occurrence = 0) const;
+  /// All entries of one draw. Where they are more than `entries` holds, a random part of them, weighted up.
+  /// Returns how many were filled.
+  std::size_t sample_entries(const BssrdfPoint& exit, const EntryRandom& u,
+                             std::span<EntrySample> entries) const;
+
+  const Bssrdf& model() const { return model_; }
+
+ private:
+  struct Candidate;
+  std::span<Candidate> draw(const Exit& exit, const EntryRandom& u) const;
+  EntrySample finish(const Exit& exit, const Candidate& candidate, double factor) const;
+  /// Density of the radius per metre.
+  double radius_density(const Exit& exit, double radius) const;
+  double density(const Exit& exit, const Vec3& position, const Vec3& normal) const;
+  bool in_medium(uint32_t triangle) const;
+
+  const Bssrdf& model_;
+  ProbeTarget target_;
+  AreaSampler area_;
+  Vec3 centre_{0};  // of a sphere around the object
+  double radius_ = 0;
+};
+
+}  // namespace alabaster
