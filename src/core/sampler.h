@@ -29,6 +29,7 @@ enum class Dimension : uint32_t {
   diffuse_direction,
   specular_path,
   walk,
+  roulette,
 };
 
 enum class SamplerKind { sobol, independent };

@@ -1,0 +1,410 @@
+#include "integrators/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bssrdf/placements.h"
+#include "core/frame.h"
+#include "optics/fresnel.h"
+
+namespace alabaster {
+
+namespace {
+
+// Chains of mirrors and internal reflections end here at the latest.
+constexpr int max_specular_chain = 64;
+
+double power_heuristic(double pdf, double other) {
+  return pdf * pdf / (pdf * pdf + other * other);
+}
+
+Vec3 cosine_direction(const Vec3& normal, Vec2 u) {
+  const double r = std::sqrt(u.x), phi = 2 * pi * u.y;
+  return Frame(normal).to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)});
+}
+
+}  // namespace
+
+struct SurfaceIntegrator::Interface {
+  double eta = 1.5;
+  double diffuse_transmittance = 1;  // c of DESIGN section 1
+  double transmission(double cosine) const {
+    return 1 - fresnel_dielectric(std::clamp(cosine, 0.0, 1.0), eta);
+  }
+};
+
+struct SurfaceIntegrator::Body {
+  Medium medium;
+  Rgb sigma_t;
+  double sigma_min = 0;
+  std::unique_ptr<KernelPlacement> placement;
+  std::unique_ptr<Bssrdf> model;
+  std::unique_ptr<ProbeSampler> probe;
+};
+
+struct SurfaceIntegrator::Path {
+  const Sampler& sampler;
+  uint32_t vertices = 0;  // begun so far: tells their random numbers apart
+};
+
+struct SurfaceIntegrator::Arrival {
+  /// Density per solid angle with which the direction was drawn; 0 where light sampling had no chance, so
+  /// that lights the ray finds count in full.
+  double pdf = 0;
+  Vec3 origin{0}, normal{0};  // as given to the light sampler
+  int bounces = 0;            // diffuse ones so far
+  int chain = 0;              // mirror and refraction events so far
+  double throughput = 1;      // an estimate of the path's weight, for Russian roulette
+  bool camera = false;
+
+  Arrival specular(double factor) const {
+    Arrival next = *this;
+    next.pdf = 0;
+    next.camera = false;
+    ++next.chain;
+    next.throughput *= factor;
+    return next;
+  }
+  Arrival scattered(double direction_pdf, const SurfacePoint& from, double factor) const {
+    Arrival next = specular(factor);
+    next.pdf = direction_pdf;
+    next.origin = from.position;
+    next.normal = from.geometric_normal;
+    return next;
+  }
+  double weight_against(double light_pdf) const { return pdf > 0 ? power_heuristic(pdf, light_pdf) : 1; }
+};
+
+SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& options)
+    : scene_(scene), options_(options), lights_(scene) {
+  const double reach = std::max(glm::length(scene.bounds.low), glm::length(scene.bounds.high));
+  offset_ = 0x1p-20 * reach;  // a few units in the last place of Embree's floats
+  for (const Material& material : scene.materials) {
+    stochastic_opacity_ |= material.alpha_mode == AlphaMode::blend;
+    const double eta = material.medium ? material.medium->eta : material.ior;
+    interfaces_.push_back({eta, diffuse_transmittance(eta)});
+  }
+  prepare_bodies();
+}
+
+SurfaceIntegrator::~SurfaceIntegrator() = default;
+
+void SurfaceIntegrator::prepare_bodies() {
+  body_of_.resize(scene_.objects.size());
+  for (uint32_t o = 0; o < scene_.objects.size(); ++o) {
+    const SceneObject& object = scene_.objects[o];
+    body_of_[o].assign(scene_.materials.size(), nullptr);
+    std::vector<uint8_t> used(scene_.materials.size(), 0);
+    for (const uint16_t material : object.mesh.materials) used[material] = 1;
+    for (std::size_t m = 0; m < used.size(); ++m) {
+      if (!used[m] || !scene_.materials[m].medium || body_of_[o][m] != nullptr) continue;
+      auto body = std::make_unique<Body>();
+      body->medium = *scene_.materials[m].medium;
+      body->sigma_t = body->medium.sigma_t();
+      body->sigma_min = body->sigma_t.min();
+      ProbeTarget target{&scene_.rays, &object.mesh, o, std::vector<uint8_t>(used.size(), 0)};
+      for (std::size_t other = m; other < used.size(); ++other)
+        if (used[other] && scene_.materials[other].medium == body->medium) {
+          target.material_in_medium[other] = 1;
+          body_of_[o][other] = body.get();
+        }
+      body->placement = std::make_unique<ProjectedChordPlacement>(object.mesh, object.atlas, scene_.rays, o);
+      const BssrdfMedium below{&baseline_profile(), body->sigma_t, object.albedo.get()};
+      body->model = make_bssrdf(options_.model, below, {body->placement.get()});
+      body->probe = std::make_unique<ProbeSampler>(*body->model, std::move(target));
+      bodies_.push_back(std::move(body));
+    }
+  }
+}
+
+const SurfaceIntegrator::Body* SurfaceIntegrator::body(const Interaction& it) const {
+  return body_of_[it.point.object][it.material_index];
+}
+
+PixelSample SurfaceIntegrator::sample(int x, int y, const Sampler& sampler) const {
+  Path path{sampler};
+  const Vec2 pixel = Vec2(x, y) + sampler.get_2d(Dimension::pixel);
+  const Ray ray = options_.camera.ray(pixel, options_.width, options_.height);
+  Arrival arrival;
+  arrival.camera = true;
+  PixelSample result;
+  const uint32_t vertex = path.vertices++;
+  const auto hit = scene_.rays.nearest(ray, opacity_number(path, vertex));
+  result.radiance = disks(ray, hit ? hit->t : ray.t_max, arrival);
+  if (!hit) {
+    result.radiance += environment(ray, arrival);
+    result.alpha = options_.environment_visible && scene_.environment ? 1
+                   : result.radiance.is_black()                       ? 0
+                                                                      : 1;
+    return result;
+  }
+  const Interaction it = make_interaction(scene_, ray, *hit);
+  result.radiance += emission(ray, *hit, arrival) + outgoing(it, arrival, path);
+  result.alpha = 1;
+  result.hit = true;
+  result.albedo = it.base_colour;
+  result.normal = it.point.shading_normal;
+  result.depth = hit->t * glm::dot(ray.direction, options_.camera.direction);
+  return result;
+}
+
+Rgb SurfaceIntegrator::incoming(const Ray& ray, const Arrival& arrival, Path& path) const {
+  const uint32_t vertex = path.vertices++;
+  const auto hit = scene_.rays.nearest(ray, opacity_number(path, vertex));
+  Rgb sum;
+  sum += disks(ray, hit ? hit->t : ray.t_max, arrival);
+  if (!hit) return sum + environment(ray, arrival);
+  sum += emission(ray, *hit, arrival);
+  if (arrival.bounces > options_.depth || arrival.chain > max_specular_chain) return sum;
+  const double survival = std::min(1.0, arrival.throughput);
+  if (survival < 1 && path.sampler.get_1d(Dimension::roulette, vertex) >= survival) return sum;
+  Arrival survivor = arrival;
+  survivor.throughput = std::max(1.0, arrival.throughput);
+  return sum + outgoing(make_interaction(scene_, ray, *hit), survivor, path) / survival;
+}
+
+Rgb SurfaceIntegrator::environment(const Ray& ray, const Arrival& arrival) const {
+  if (!scene_.environment || (arrival.camera && !options_.environment_visible)) return Rgb();
+  const Rgb radiance = scene_.environment->radiance(ray.direction);
+  if (arrival.pdf == 0) return radiance;
+  return radiance *
+         arrival.weight_against(lights_.pdf_environment(arrival.origin, arrival.normal, ray.direction));
+}
+
+Rgb SurfaceIntegrator::disks(const Ray& ray, double t_max, const Arrival& arrival) const {
+  Ray until = ray;
+  until.t_max = t_max;
+  const auto hit = lights_.nearest_disk(until);
+  if (!hit) return Rgb();
+  if (arrival.pdf == 0) return hit->radiance;
+  return hit->radiance *
+         arrival.weight_against(lights_.pdf_disk(arrival.origin, arrival.normal, ray.direction, *hit));
+}
+
+Rgb SurfaceIntegrator::emission(const Ray& ray, const Hit& hit, const Arrival& arrival) const {
+  if (scene_.material(hit).emission.is_black()) return Rgb();
+  const Rgb radiance = lights_.emitted(hit, ray.direction);
+  if (arrival.pdf == 0 || radiance.is_black()) return radiance;
+  return radiance *
+         arrival.weight_against(lights_.pdf_triangle(arrival.origin, arrival.normal, ray.direction, hit));
+}
+
+Rgb SurfaceIntegrator::fresnel(const Interaction& it, double cosine) const {
+  const double dielectric = 1 - interfaces_[it.material_index].transmission(cosine);
+  if (it.metallic == 0) return Rgb(dielectric);
+  // glTF 2.0, appendix B: Schlick's form, base colour at normal incidence.
+  const double grazing = std::pow(1 - std::clamp(cosine, 0.0, 1.0), 5.0);
+  const Rgb metal = it.base_colour + (Rgb(1) - it.base_colour) * grazing;
+  return (1 - it.metallic) * Rgb(dielectric) + it.metallic * metal;
+}
+
+Rgb SurfaceIntegrator::outgoing(const Interaction& it, const Arrival& arrival, Path& path) const {
+  if (!options_.specular) return from_body(it, arrival, path);
+  const Rgb mirror = fresnel(it, it.cos_viewer);
+  // What the camera sees directly gets both parts; later one of them, so that paths do not multiply.
+  if (arrival.bounces == 0 && arrival.chain == 0)
+    return from_body(it, arrival, path) + mirrored(it, arrival, path);
+  const double through = (1 - mirror.max()) * std::max(0.05, it.base_colour.max());
+  const double p = mirror.max() / std::max(1e-9, mirror.max() + through);
+  if (path.sampler.get_1d(Dimension::lobe, path.vertices) < p) return mirrored(it, arrival, path) / p;
+  return from_body(it, arrival, path) / (1 - p);
+}
+
+// ---- The interface ----
+
+Rgb SurfaceIntegrator::mirrored(const Interaction& it, const Arrival& arrival, Path& path) const {
+  if (!it.roughness.is_smooth()) return mirrored_rough(it, arrival, path);
+  const Rgb factor = fresnel(it, it.cos_viewer);
+  if (factor.is_black()) return Rgb();
+  const Vec3 direction = mirror_direction(it.towards_viewer, it.mirror_normal, it.point.geometric_normal);
+  const Rgb arriving = incoming(leaving(it.point, direction), arrival.specular(factor.max()), path) +
+                       lights_.uniform_radiance(it.point.position);
+  return factor * arriving;
+}
+
+Rgb SurfaceIntegrator::mirrored_rough(const Interaction& it, const Arrival& arrival, Path& path) const {
+  const uint32_t vertex = path.vertices++;
+  const Frame frame(it.mirror_normal);
+  const Vec3 wo = frame.to_local(it.towards_viewer);
+  const Ggx& ggx = it.roughness;
+  Rgb sum;
+
+  const auto light = lights_.sample(it.point.position, it.point.geometric_normal,
+                                    path.sampler.get_1d(Dimension::light_choice, vertex),
+                                    path.sampler.get_2d(Dimension::light_point, vertex));
+  if (light) {
+    const Vec3 wi = frame.to_local(light->direction);
+    if (wi.z > 0 && glm::dot(light->direction, it.point.geometric_normal) > 0 &&
+        lit(it.point, *light, opacity_number(path, vertex))) {
+      const Vec3 h = glm::normalize(wo + wi);
+      const Rgb value =
+          fresnel(it, glm::dot(wo, h)) * (ggx.distribution(h) * ggx.masking_shadowing(wo, wi) / (4 * wo.z));
+      const double weight = light->delta ? 1 : power_heuristic(light->pdf, ggx.pdf_reflection(wo, wi));
+      sum += value * light->radiance * (weight / light->pdf);
+    }
+  }
+
+  const Vec3 h = ggx.sample_visible_normal(wo, path.sampler.get_2d(Dimension::reflection, vertex));
+  const Vec3 wi = 2 * glm::dot(wo, h) * h - wo;
+  const Vec3 direction = frame.to_world(wi);
+  if (wi.z <= 0 || glm::dot(direction, it.point.geometric_normal) <= 0) return sum;
+  const Rgb factor = fresnel(it, glm::dot(wo, h)) * (ggx.masking_shadowing(wo, wi) / ggx.masking(wo));
+  const Arrival next = arrival.scattered(ggx.pdf_reflection(wo, wi), it.point, factor.max());
+  return sum + factor * (incoming(leaving(it.point, direction), next, path) +
+                         lights_.uniform_radiance(it.point.position));
+}
+
+// ---- The body ----
+
+Rgb SurfaceIntegrator::from_body(const Interaction& it, const Arrival& arrival, Path& path) const {
+  const Interface& interface = interfaces_[it.material_index];
+  const double transmission = (1 - it.metallic) * interface.transmission(it.cos_viewer);
+  if (transmission <= 0) return Rgb();
+  const uint32_t vertex = path.vertices;
+  const Body* below = body(it);
+  if (below == nullptr && it.material->transmission > 0) {
+    if (path.sampler.get_1d(Dimension::specular_path, vertex) < it.material->transmission)
+      return options_.specular ? transmission * straight_through(it, arrival, path) : Rgb();
+  } else if (below != nullptr) {
+    const bool scatter_below =
+        it.subsurface >= 1 || path.sampler.get_1d(Dimension::specular_path, vertex) < it.subsurface;
+    if (scatter_below) {
+      Rgb sum = subsurface(it, *below, arrival, path);
+      if (options_.specular) sum += unscattered(it, *below, arrival, path);
+      return transmission * sum;
+    }
+  }
+  const Rgb reflectance = it.base_colour;
+  const double lobe = 1 / (pi * interface.diffuse_transmittance);
+  return transmission * lobe * reflectance *
+         entering(it.point, it.mirror_normal, interface, transmission * reflectance.max(), arrival, path);
+}
+
+Rgb SurfaceIntegrator::straight_through(const Interaction& it, const Arrival& arrival, Path& path) const {
+  SurfacePoint behind = it.point;
+  behind.geometric_normal = -behind.geometric_normal;
+  const Ray ray = leaving(behind, -it.towards_viewer);
+  return it.base_colour * incoming(ray, arrival.specular(it.base_colour.max()), path);
+}
+
+Rgb SurfaceIntegrator::subsurface(const Interaction& it, const Body& body, const Arrival& arrival,
+                                  Path& path) const {
+  const BssrdfPoint exit = body.model->medium().point(it.point);
+  const auto entry = body.probe->sample_entry(exit, path.sampler, path.vertices);
+  if (!entry || entry->weight.is_black()) {
+    ++path.vertices;
+    return Rgb();
+  }
+  SurfacePoint point = entry->point.surface;
+  if (!it.front) {  // the back of an open sheet: light enters on the side it is seen from
+    point.geometric_normal = -point.geometric_normal;
+    point.shading_normal = -point.shading_normal;
+  }
+  const TriangleMesh& mesh = scene_.objects[it.point.object].mesh;
+  const uint16_t material = mesh.materials[point.triangle];
+  const Vec3 mirror_normal = mapped_normal(scene_.materials[material], mesh, point, it.front);
+  const Interface& interface = interfaces_[it.material_index];
+  const Rgb factor = entry->weight / (pi * interface.diffuse_transmittance);
+  return factor * entering(point, mirror_normal, interfaces_[material], pi * factor.max(), arrival, path);
+}
+
+Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_normal,
+                                const Interface& interface, double weight, const Arrival& arrival,
+                                Path& path) const {
+  const uint32_t vertex = path.vertices++;
+  Rgb sum = entering_from_light(point, mirror_normal, interface, vertex, path) +
+            pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position);
+  const Vec3 direction =
+      cosine_direction(point.shading_normal, path.sampler.get_2d(Dimension::diffuse_direction, vertex));
+  if (glm::dot(direction, point.geometric_normal) <= 0) return sum;
+  const double transmission = interface.transmission(glm::dot(mirror_normal, direction));
+  if (transmission <= 0) return sum;
+  Arrival next =
+      arrival.scattered(glm::dot(point.shading_normal, direction) * inv_pi, point, weight * transmission);
+  ++next.bounces;
+  next.chain = 0;
+  sum += pi * transmission * incoming(leaving(point, direction), next, path);
+  return sum;
+}
+
+Rgb SurfaceIntegrator::entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal,
+                                           const Interface& interface, uint32_t vertex,
+                                           const Path& path) const {
+  const auto light = lights_.sample(point.position, point.geometric_normal,
+                                    path.sampler.get_1d(Dimension::light_choice, vertex),
+                                    path.sampler.get_2d(Dimension::light_point, vertex));
+  if (!light) return Rgb();
+  const double cosine = glm::dot(point.shading_normal, light->direction);
+  if (cosine <= 0 || glm::dot(point.geometric_normal, light->direction) <= 0) return Rgb();
+  const double transmission = interface.transmission(glm::dot(mirror_normal, light->direction));
+  if (transmission <= 0 || !lit(point, *light, opacity_number(path, vertex))) return Rgb();
+  const double weight = light->delta ? 1 : power_heuristic(light->pdf, cosine * inv_pi);
+  return light->radiance * (transmission * cosine * weight / light->pdf);
+}
+
+// Light that crosses the medium without scattering, as a path of refractions and internal reflections. A
+// flight length is drawn for the clearest channel: a ray that finds no surface within it is done with, at the
+// cost of a short ray, and the others need no weight in that channel.
+Rgb SurfaceIntegrator::unscattered(const Interaction& it, const Body& body, const Arrival& arrival,
+                                   Path& path) const {
+  const Vec3 out = it.towards_viewer, n = it.point.shading_normal;
+  const double eta = body.medium.eta;
+  const Vec3 tangential = (glm::dot(out, n) * n - out) / eta;
+  Vec3 direction = tangential - std::sqrt(std::max(0.0, 1 - length_squared(tangential))) * n;
+  SurfacePoint from = it.point;
+  Rgb throughput(1);
+  for (int bounce = 0; bounce < max_specular_chain; ++bounce) {
+    from.geometric_normal = -from.geometric_normal;
+    if (glm::dot(direction, from.geometric_normal) <= 0) return Rgb();
+    const Vec2 u = path.sampler.get_2d(Dimension::specular_path, path.vertices++ | 0x10000u);
+    Ray ray = leaving(from, direction);
+    ray.t_max = -std::log1p(-u.x) / body.sigma_min;
+    const auto hit = scene_.rays.nearest(ray, 0.5);
+    if (!hit) return Rgb();
+    for (int c = 0; c < 3; ++c) throughput[c] *= std::exp(-(body.sigma_t[c] - body.sigma_min) * hit->t);
+    const Interaction inside = make_interaction(scene_, ray, *hit);
+    const Arrival next = arrival.specular(throughput.max());
+    if (inside.front || this->body(inside) != &body)  // something within the medium
+      return throughput * (emission(ray, *hit, next) + outgoing(inside, next, path));
+    const Vec3 normal = inside.point.shading_normal;
+    const double cosine = glm::dot(inside.towards_viewer, normal);
+    from = inside.point;
+    if (u.y < fresnel_dielectric(std::min(1.0, cosine), 1 / eta)) {
+      direction = mirror_direction(inside.towards_viewer, normal, inside.point.geometric_normal);
+      from.geometric_normal = -from.geometric_normal;
+      continue;
+    }
+    const Vec3 across = eta * (cosine * normal - inside.towards_viewer);
+    const Vec3 refracted = across - std::sqrt(std::max(0.0, 1 - length_squared(across))) * normal;
+    SurfacePoint outside = inside.point;
+    outside.geometric_normal = -outside.geometric_normal;
+    if (glm::dot(refracted, outside.geometric_normal) <= 0) return Rgb();
+    return throughput *
+           (incoming(leaving(outside, refracted), next, path) + lights_.uniform_radiance(outside.position));
+  }
+  return Rgb();
+}
+
+// ---- Rays ----
+
+double SurfaceIntegrator::opacity_number(const Path& path, uint32_t vertex) const {
+  return stochastic_opacity_ ? path.sampler.get_1d(Dimension::opacity, vertex) : 0.5;
+}
+
+Ray SurfaceIntegrator::leaving(const SurfacePoint& point, const Vec3& direction) const {
+  Ray ray;
+  ray.origin = point.position + offset_ * point.geometric_normal;
+  ray.direction = direction;
+  ray.ignore_object = point.object;
+  ray.ignore_triangle = point.triangle;
+  return ray;
+}
+
+bool SurfaceIntegrator::lit(const SurfacePoint& point, const LightSample& light,
+                            double opacity_number) const {
+  Ray ray = leaving(point, light.direction);
+  ray.t_max = light.distance * (1 - 1e-6) - offset_;
+  return !scene_.rays.occluded(ray, opacity_number);
+}
+
+}  // namespace alabaster

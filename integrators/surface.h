@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bssrdf/probe_sampler.h"
+#include "integrators/integrator.h"
+#include "integrators/interaction.h"
+#include "scene/light_sampler.h"
+#include "scene/scene.h"
+
+namespace alabaster {
+
+struct SurfaceOptions {
+  int width = 512, height = 512;  // of the whole image, pixels
+  Camera camera;
+  std::string model = "composite";  // see make_bssrdf()
+  /// Diffuse bounces between surfaces; 0: direct light only.
+  int depth = 4;
+  bool environment_visible = true;  // to camera rays
+  /// Without: neither the mirror term nor light that never scattered, only what left a surface's body.
+  bool specular = true;
+};
+
+/// Radiance of a scene by DESIGN section 1: every surface is a dielectric (or metal) interface over a body.
+/// The interface mirrors; the body is a BSSRDF where the material has a medium and diffuse where it has not.
+/// Light that crosses a medium without scattering is traced as a path of its own. docs/rendering.md has the
+/// estimators.
+///
+/// The scene outlives the integrator.
+class SurfaceIntegrator final : public Integrator {
+ public:
+  SurfaceIntegrator(const Scene& scene, const SurfaceOptions& options);
+  ~SurfaceIntegrator() override;
+
+  PixelSample sample(int x, int y, const Sampler& sampler) const override;
+  int width() const override { return options_.width; }
+  int height() const override { return options_.height; }
+
+ private:
+  struct Interface;  // what is fixed for a material
+  struct Body;       // what light meets below the surfaces of one medium of one object
+  struct Path;       // the state of one pixel sample
+  struct Arrival;    // how a ray came to be traced
+
+  /// Radiance that comes in along a ray.
+  Rgb incoming(const Ray& ray, const Arrival& arrival, Path& path) const;
+  Rgb environment(const Ray& ray, const Arrival& arrival) const;
+  Rgb disks(const Ray& ray, double t_max, const Arrival& arrival) const;
+  Rgb emission(const Ray& ray, const Hit& hit, const Arrival& arrival) const;
+  /// What a surface sends towards the ray's origin, emission apart.
+  Rgb outgoing(const Interaction& it, const Arrival& arrival, Path& path) const;
+
+  // The three parts of it; each comes with the factor that the interface puts on it.
+  Rgb mirrored(const Interaction& it, const Arrival& arrival, Path& path) const;
+  Rgb from_body(const Interaction& it, const Arrival& arrival, Path& path) const;
+  Rgb unscattered(const Interaction& it, const Body& body, const Arrival& arrival, Path& path) const;
+
+  Rgb mirrored_rough(const Interaction& it, const Arrival& arrival, Path& path) const;
+  Rgb straight_through(const Interaction& it, const Arrival& arrival, Path& path) const;
+  Rgb subsurface(const Interaction& it, const Body& body, const Arrival& arrival, Path& path) const;
+  /// Estimates the integral of T(cos) L cos over the hemisphere: direct light, and one bounce on.
+  Rgb entering(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
+               double weight, const Arrival& arrival, Path& path) const;
+  Rgb entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
+                          uint32_t vertex, const Path& path) const;
+
+  Rgb fresnel(const Interaction& it, double cosine) const;
+  double opacity_number(const Path& path, uint32_t vertex) const;
+  Ray leaving(const SurfacePoint& point, const Vec3& direction) const;
+  bool lit(const SurfacePoint& point, const LightSample& light, double opacity_number) const;
+
+  void prepare_bodies();
+  const Body* body(const Interaction& it) const;
+
+  const Scene& scene_;
+  SurfaceOptions options_;
+  LightSampler lights_;
+  double offset_;  // m: how far rays start off a surface
+  bool stochastic_opacity_ = false;
+  std::vector<Interface> interfaces_;  // per material
+  std::vector<std::unique_ptr<Body>> bodies_;
+  std::vector<std::vector<const Body*>> body_of_;  // object x material
+};
+
+}  // namespace alabaster
