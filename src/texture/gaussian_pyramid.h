@@ -9,33 +9,60 @@ namespace alabaster {
 
 /// A texture and its Gaussian-filtered, ever coarser versions, each texel weighted by how much of it the
 /// surface covers: no texel outside a chart is ever averaged. Level 0 is the texture itself.
+///
+/// A lookup reads one level only, through a kernel of 4 x 4 to 10 x 10 taps whose width makes up for what the
+/// level's own blur lacks; results lie in the convex hull of the covered texels, and a constant texture comes
+/// out constant up to float rounding. What lies beyond the edge: repeat and mirror continue exactly; with
+/// clamp it is not surface and counts for nothing. docs/pyramids.md has accuracy and cost. Thread-safe.
 class GaussianPyramid {
  public:
-  /// `coverage` has one weight per texel, 0 to 1 (empty: all 1). Texels of zero weight never contribute.
-  GaussianPyramid(const TexelArray& texels, std::vector<float> coverage, Wrap wrap_u, Wrap wrap_v);
+  /// `coverage` has one weight per texel, 0 to 1 (empty: all 1). Texels of zero weight never contribute; when
+  /// all are zero the coverage is taken as 1. `filter` is how the finest level is read.
+  GaussianPyramid(const TexelArray& texels, std::vector<float> coverage, Wrap wrap_u, Wrap wrap_v,
+                  Filter filter = Filter::linear);
 
-  /// Bilinear at the finest level, weighted by coverage. `st` in texture space (after the mapping's
-  /// transform).
+  /// Bilinear (or nearest) at the finest level, weighted by coverage. `st` in texture space (after the
+  /// mapping's transform). Where no texel near st is covered: the closest coarser average that exists.
   Rgb at(Vec2 st) const;
-  /// The average under a Gaussian of standard deviation `sigma` texels (of level 0), by one trilinear lookup.
+  /// The average of at() under a Gaussian of standard deviation `sigma` texels (of level 0). From about half
+  /// the texture on (its whole, where it is mirrored or clamped) it runs into mean().
   Rgb filtered(Vec2 st, double sigma_texels) const;
-  /// Gaussian with covariance in texels; several taps along the long axis when it is stretched.
+  /// Gaussian with covariance in texels; several taps along the long axis when it is stretched, at most nine:
+  /// beyond a ratio of about 7 the short axis is blurred as well.
   Rgb filtered(Vec2 st, const Mat2& covariance_texels) const;
 
+  /// Largest and coverage-weighted mean value over covered texels.
   Rgb max() const { return max_; }
-  int width() const;
-  int height() const;
+  Rgb mean() const;
+  int width() const { return levels_.front().extent[0]; }
+  int height() const { return levels_.front().extent[1]; }
   std::size_t memory_bytes() const;
 
  private:
   struct Level {
-    int width = 0, height = 0;
-    double sigma = 0;           // total blur of this level, level-0 texels
-    std::vector<Vec4f> texels;  // rgb * weight, weight
+    int extent[2] = {0, 0};         // samples along u and v
+    double samples_per_texel[2]{};  // extent over level 0's
+    double blur[2]{};               // variance of what a sample averages, in its own spacings squared
+    double first_variance = 0;      // smallest total variance this level serves, texels of level 0
+    std::size_t stride = 0;         // padded row
+    std::vector<Vec4f> texels;      // rgb * weight, weight; with a margin that continues the wrap
+
+    const Vec4f* sample(int x, int y) const;
+    Vec4f* sample(int x, int y);
   };
-  Vec4 lookup(const Level& level, Vec2 st) const;
+  static Level allocate(int width, int height);
+  void fill_margin(Level& level) const;
+  Level coarser(const Level& level, int width, int height) const;
+  void add_coarser_levels();
+
+  Vec4f gather(Vec2 st, double variance) const;
+  Rgb resolve(Vec2 st, double sigma_texels, const Vec4f& sum) const;
+
   std::vector<Level> levels_;
-  Wrap wrap_u_, wrap_v_;
+  Wrap wrap_[2];
+  Filter filter_;
+  double mean_from_ = 0;  // total variance from which the mean is blended in
+  Vec4f mean_{0};         // premultiplied
   Rgb max_;
 };
 
