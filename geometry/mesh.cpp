@@ -48,20 +48,47 @@ std::size_t prepare_attributes(TriangleMesh& mesh) {
   return count;
 }
 
-/// Appends a copy of one attribute and returns its index.
-uint32_t duplicate_attribute(TriangleMesh& mesh, uint32_t attribute) {
-  const auto index = static_cast<uint32_t>(mesh.normals.size());
-  const auto append = [attribute](auto& array) {
-    if (array.empty()) return;
-    const auto value = array[attribute];  // by value: the array may move
-    array.push_back(value);
-  };
-  append(mesh.normals);
-  for (auto& set : mesh.uv_sets) append(set);
-  append(mesh.tangents);
-  append(mesh.colours);
-  return index;
-}
+/// Splits attributes whose corners need different values (the two sides of a mirror seam, the triangles of a
+/// flat-shaded corner). State is what an attribute stands for; an unclaimed attribute takes the first asked.
+template <class State>
+class AttributeVariants {
+ public:
+  AttributeVariants(TriangleMesh& mesh, std::size_t count)
+      : mesh_(mesh), state_(count), claimed_(count, false), next_(count, no_index) {}
+
+  /// The attribute itself or the copy of it that stands for `wanted`.
+  uint32_t variant(uint32_t attribute, const State& wanted) {
+    while (claimed_[attribute] && !(state_[attribute] == wanted)) {
+      if (next_[attribute] == no_index) next_[attribute] = duplicate(attribute);
+      attribute = next_[attribute];
+    }
+    claimed_[attribute] = true;
+    state_[attribute] = wanted;
+    return attribute;
+  }
+
+ private:
+  uint32_t duplicate(uint32_t attribute) {
+    const auto append = [attribute](auto& array) {
+      if (array.empty()) return;
+      const auto value = array[attribute];  // by value: the array may move
+      array.push_back(value);
+    };
+    append(mesh_.normals);
+    for (auto& set : mesh_.uv_sets) append(set);
+    append(mesh_.tangents);
+    append(mesh_.colours);
+    state_.emplace_back();
+    claimed_.push_back(false);
+    next_.push_back(no_index);
+    return static_cast<uint32_t>(state_.size() - 1);
+  }
+
+  TriangleMesh& mesh_;
+  std::vector<State> state_;
+  std::vector<bool> claimed_;
+  std::vector<uint32_t> next_;
+};
 
 }  // namespace
 
@@ -122,41 +149,29 @@ double enclosed_volume(const TriangleMesh& mesh) {
 }
 
 void compute_smooth_normals(TriangleMesh& mesh) {
-  prepare_attributes(mesh);
+  AttributeVariants<uint32_t> variants(mesh, prepare_attributes(mesh));
   std::vector<Vec3> sums(mesh.positions.size(), Vec3(0));
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Vec3 weight = area_vector(mesh, t);
     if (!(length_squared(weight) >= 0)) continue;
     for (const uint32_t corner : mesh.corners[t]) sums[corner] += weight;
   }
-  // An attribute that two positions share needs a normal for each.
-  std::vector<uint32_t> position_of(mesh.normals.size(), no_index);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      uint32_t& attribute = mesh.attributes[t][k];
       const uint32_t corner = mesh.corners[t][k];
-      if (position_of[attribute] != no_index && position_of[attribute] != corner) {
-        attribute = duplicate_attribute(mesh, attribute);
-        position_of.push_back(no_index);
-      }
-      position_of[attribute] = corner;
       const Vec3 normal = unit_or_zero(sums[corner]);
+      const uint32_t attribute = mesh.attributes[t][k] = variants.variant(mesh.attributes[t][k], corner);
       mesh.normals[attribute] = Vec3f(normal != Vec3(0) ? normal : Vec3(0, 0, 1));
     }
 }
 
 void compute_flat_normals(TriangleMesh& mesh) {
-  prepare_attributes(mesh);
-  std::vector<bool> taken(mesh.normals.size(), false);
+  AttributeVariants<Vec3f> variants(mesh, prepare_attributes(mesh));
   for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     const Vec3 geometric = mesh.geometric_normal(t);
     const Vec3f normal(geometric != Vec3(0) ? geometric : Vec3(0, 0, 1));
     for (uint32_t& attribute : mesh.attributes[t]) {
-      if (taken[attribute] && mesh.normals[attribute] != normal) {
-        attribute = duplicate_attribute(mesh, attribute);
-        taken.push_back(false);
-      }
-      taken[attribute] = true;
+      attribute = variants.variant(attribute, normal);
       mesh.normals[attribute] = normal;
     }
   }
@@ -192,34 +207,26 @@ Vec3 any_perpendicular(const Vec3& n) {
 
 void compute_tangents(TriangleMesh& mesh, std::size_t set) {
   const std::size_t count = prepare_attributes(mesh);
-  mesh.tangents.assign(count, Vec4f(0));
+  mesh.tangents.assign(count, Vec4f(0, 0, 0, 1));
   const bool has_uv = set < mesh.uv_sets.size() && !mesh.uv_sets[set].empty();
+  AttributeVariants<bool> mirrored(mesh, count);
   std::vector<Vec3> sums(count, Vec3(0));
-  std::vector<int8_t> handedness(count, 0);
-  std::vector<uint32_t> mirrored_twin(count, no_index);
   for (std::size_t t = 0; has_uv && t < mesh.triangle_count(); ++t) {
     const TriangleTangent tangent = triangle_tangent(mesh, t, set);
     if (tangent.direction == Vec3(0)) continue;
-    const int8_t hand = tangent.mirrored ? -1 : 1;
     for (uint32_t& attribute : mesh.attributes[t]) {
-      if (handedness[attribute] != 0 && handedness[attribute] != hand) {
-        // The two sides of a mirror seam share this attribute: the other side gets its own.
-        if (mirrored_twin[attribute] == no_index) {
-          const uint32_t twin = duplicate_attribute(mesh, attribute);
-          mirrored_twin[attribute] = twin;
-          sums.push_back(Vec3(0)), handedness.push_back(0), mirrored_twin.push_back(no_index);
-        }
-        attribute = mirrored_twin[attribute];
-      }
-      handedness[attribute] = hand;
+      attribute = mirrored.variant(attribute, tangent.mirrored);
+      if (attribute >= sums.size()) sums.resize(attribute + 1, Vec3(0));
       sums[attribute] += tangent.direction;
+      mesh.tangents[attribute].w = tangent.mirrored ? -1.0f : 1.0f;
     }
   }
+  sums.resize(mesh.tangents.size(), Vec3(0));
   for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
     const Vec3 normal = unit_or_zero(Vec3(mesh.normals[i]));
     const Vec3 projected = unit_or_zero(sums[i] - normal * glm::dot(normal, sums[i]));
     const Vec3 tangent = projected != Vec3(0) ? projected : any_perpendicular(normal);
-    mesh.tangents[i] = Vec4f(Vec3f(tangent), handedness[i] < 0 ? -1.0f : 1.0f);
+    mesh.tangents[i] = Vec4f(Vec3f(tangent), mesh.tangents[i].w);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -14,6 +15,7 @@ class UvAtlas {
   UvAtlas() = default;
   explicit UvAtlas(const TriangleMesh& mesh, std::size_t uv_set = 0);
 
+  /// The mesh has no such UV set; then nothing below may be asked.
   bool empty() const { return chart_of_triangle_.empty(); }
   /// Triangles that share an edge with equal UVs on it belong to one chart.
   uint32_t chart(uint32_t triangle) const { return chart_of_triangle_[triangle]; }
@@ -30,6 +32,8 @@ class UvAtlas {
   std::size_t non_finite_corners = 0;
 
  private:
+  void set_jacobian(const TriangleMesh& mesh, uint32_t triangle, const std::array<Vec2, 3>& uv);
+
   std::vector<uint32_t> chart_of_triangle_;
   std::vector<float> uv_per_metre_;
   std::vector<std::array<Vec3f, 2>> gradients_;  // rows of the 2 x 3 map
