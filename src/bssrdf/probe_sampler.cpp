@@ -9,11 +9,19 @@
 namespace alabaster {
 namespace {
 
+// The figures behind these choices stand in docs/probe_sampling.md.
+
+/// Cosine between the axes and the normal.
+constexpr double axis_cosine = 0.8;
 /// Beyond its near part a chord is searched with this probability.
-constexpr double far_probability = 0.25;
+constexpr double far_probability = 0.1;
 /// The near part reaches as far as this share of the radii, plus a multiple of the radius drawn.
 constexpr double near_quantile = 0.9;
 constexpr double near_radii = 2;
+/// Of the draws, these go to the area strategy on a large and, in addition, on a small object.
+constexpr double area_share = 0.01, area_share_small = 0.1;
+/// Of the radii, this part follows the brightest albedo anywhere instead of the typical one around the exit.
+constexpr double brightest_share = 0.25;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -25,15 +33,25 @@ bool decide(double& u, double probability) {
   return false;
 }
 
-/// Three perpendicular axes that stand at equal angles to the normal, so that none of them can miss a flat
-/// surface and a surface at a right angle to it is seen as well.
+/// Three directions at equal angles to the normal and to each other: none of them can miss a flat surface,
+/// and a surface at a right angle to it, or at any other, is seen by one of them at least.
 std::array<Vec3, 3> tilted_axes(const Vec3& normal) {
   const Frame frame(normal);
-  constexpr double along = 0.57735026918962576, aside = 0.81649658092772603;
+  const double aside = std::sqrt(1 - axis_cosine * axis_cosine);
   constexpr double half = 0.5, root = 0.86602540378443865;
-  const Vec3 n = along * normal;
+  const Vec3 n = axis_cosine * normal;
   return {n + aside * frame.tangent, n + aside * (-half * frame.tangent + root * frame.bitangent),
           n + aside * (-half * frame.tangent - root * frame.bitangent)};
+}
+
+ProbeSampler::Exit::Axis axis_towards(const Vec3& direction, const Vec3& to_centre) {
+  ProbeSampler::Exit::Axis axis;
+  axis.direction = direction;
+  const Vec3 offset = to_centre - glm::dot(to_centre, direction) * direction;
+  axis.centre = glm::length(offset);
+  axis.across = axis.centre > 1e-9 * glm::length(to_centre) ? offset / axis.centre : Frame(direction).tangent;
+  axis.aside = glm::cross(direction, axis.across);
+  return axis;
 }
 
 }  // namespace
@@ -63,81 +81,96 @@ bool ProbeSampler::in_medium(uint32_t triangle) const {
 std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
   const Rgb typical = model_.typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
-  const Rgb brightest = model_.medium().albedo->max();
-  const Rgb& sigma_t = model_.medium().sigma_t;
   const DistanceTable& table = model_.distances();
 
   Exit exit;
   exit.point = point;
-  exit.axes = tilted_axes(point.surface.geometric_normal);
-  exit.radius_limit = glm::distance(point.surface.position, centre_) + radius_;
-  const auto add = [&](double albedo, double sigma, double share) {
+  const Vec3 to_centre = centre_ - point.surface.position;
+  const std::array<Vec3, 3> directions = tilted_axes(point.surface.geometric_normal);
+  for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis_towards(directions[a], to_centre);
+  add_components(exit, typical);
+  for (int k = 0; k < exit.component_count; ++k) {
+    Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
+    for (std::size_t a = 0; a < 3; ++a)
+      c.reach[a] = table.cdf(c.level, c.sigma_t * (exit.axes[a].centre + radius_));
+    exit.near_limit = std::max(exit.near_limit, table.sample(c.level, near_quantile) / c.sigma_t);
+  }
+  const double spread = 2 * pi * exit.near_limit * exit.near_limit;
+  exit.area_probability = area_share + area_share_small * std::min(1.0, spread / area_.area());
+  return exit;
+}
+
+void ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
+  const auto add = [&](double albedo, double sigma_t, double share) {
     const int level = DistanceTable::level(albedo);
     for (int k = 0; k < exit.component_count; ++k) {
       Exit::Component& other = exit.components[static_cast<std::size_t>(k)];
-      if (other.level == level && other.sigma_t == sigma) {
+      if (other.level == level && other.sigma_t == sigma_t) {
         other.probability += share;
         return;
       }
     }
-    exit.components[static_cast<std::size_t>(exit.component_count++)] = {
-        level, sigma, share, table.cdf(level, sigma * exit.radius_limit)};
+    Exit::Component& fresh = exit.components[static_cast<std::size_t>(exit.component_count++)];
+    fresh.level = level;
+    fresh.sigma_t = sigma_t;
+    fresh.probability = share;
   };
+  const Rgb brightest = model_.medium().albedo->max();
   const double sum = typical.r + typical.g + typical.b;
   for (int c = 0; c < 3; ++c) {
     if (!(typical[c] > 0)) continue;
-    const double share = typical[c] / sum;
-    add(typical[c], sigma_t[c], 0.75 * share);
-    add(std::max(typical[c], brightest[c]), sigma_t[c], 0.25 * share);
-    exit.near_limit =
-        std::max(exit.near_limit, table.sample(DistanceTable::level(typical[c]), near_quantile) / sigma_t[c]);
+    const double share = typical[c] / sum, sigma_t = model_.medium().sigma_t[c];
+    add(typical[c], sigma_t, (1 - brightest_share) * share);
+    add(std::max(typical[c], brightest[c]), sigma_t, brightest_share * share);
   }
-  const double spread = 2 * pi * exit.near_limit * exit.near_limit;
-  exit.area_probability = 0.02 + 0.18 * std::min(1.0, spread / area_.area());
-  return exit;
 }
 
-double ProbeSampler::radius_density(const Exit& exit, double radius) const {
+/// Density per metre of the radius around an axis.
+double ProbeSampler::radius_density(const Exit& exit, std::size_t axis, double radius) const {
   double sum = 0;
   for (int k = 0; k < exit.component_count; ++k) {
     const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    sum += c.probability * c.sigma_t / c.reach * model_.distances().pdf(c.level, c.sigma_t * radius);
+    sum += c.probability * c.sigma_t / c.reach[axis] * model_.distances().pdf(c.level, c.sigma_t * radius);
   }
   return sum;
 }
 
-std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 disk) const {
-  const auto axis = std::min<std::size_t>(static_cast<std::size_t>(3 * choice.x), 2);
-  double u = 3 * choice.x - static_cast<double>(axis);
-  int k = 0;
-  while (k + 1 < exit.component_count && u >= exit.components[static_cast<std::size_t>(k)].probability)
-    u -= exit.components[static_cast<std::size_t>(k++)].probability;
-  const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-  const double radius = model_.distances().sample(c.level, disk.x * c.reach) / c.sigma_t;
-  const double angle = 2 * pi * disk.y;
+/// Half of the arc of that radius around the exit that lies within the object's circle.
+double ProbeSampler::half_angle(const Exit::Axis& axis, double radius) const {
+  if (radius + axis.centre <= radius_) return pi;
+  const double cosine =
+      (radius * radius + axis.centre * axis.centre - radius_ * radius_) / (2 * radius * axis.centre);
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
 
-  const Vec3& direction = exit.axes[axis];
-  const Vec3& across = exit.axes[(axis + 1) % 3];
-  const Vec3& aside = exit.axes[(axis + 2) % 3];
-  const Vec3& x = exit.point.surface.position;
-  const Vec3 centre = x + radius * (std::cos(angle) * across + std::sin(angle) * aside);
+std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 disk) const {
+  const auto a = std::min<std::size_t>(static_cast<std::size_t>(3 * choice.x), 2);
+  const Exit::Axis& axis = exit.axes[a];
+  double u = 3 * choice.x - static_cast<double>(a);
+  std::size_t k = 0;
+  while (k + 1 < static_cast<std::size_t>(exit.component_count) && u >= exit.components[k].probability)
+    u -= exit.components[k++].probability;
+  const Exit::Component& c = exit.components[k];
+  const double radius = model_.distances().sample(c.level, disk.x * c.reach[a]) / c.sigma_t;
+  const double angle = half_angle(axis, radius) * (2 * disk.y - 1);
+  const Vec3 centre =
+      exit.point.surface.position + radius * (std::cos(angle) * axis.across + std::sin(angle) * axis.aside);
 
   // The chord within the bounding sphere, then its near part.
   const Vec3 to_sphere = centre_ - centre;
-  const double middle = glm::dot(to_sphere, direction);
+  const double middle = glm::dot(to_sphere, axis.direction);
   const double half_squared = radius_ * radius_ - (length_squared(to_sphere) - middle * middle);
-  if (!(half_squared > 0)) return std::nullopt;
-  const double half = std::sqrt(half_squared);
+  const double half = std::sqrt(std::max(half_squared, 0.0));
   double low = middle - half, high = middle + half;
   if (choice.y >= far_probability) {
     const double near = exit.near_limit + near_radii * radius;
     low = std::max(low, -near);
     high = std::min(high, near);
-    if (!(low < high)) return std::nullopt;
   }
+  if (!(low < high)) return std::nullopt;
   Probe probe;
-  probe.ray.origin = centre + low * direction;
-  probe.ray.direction = direction;
+  probe.ray.origin = centre + low * axis.direction;
+  probe.ray.direction = axis.direction;
   probe.ray.t_max = high - low;
   return probe;
 }
@@ -145,14 +178,15 @@ std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 di
 double ProbeSampler::density(const Exit& exit, const Vec3& position, const Vec3& normal) const {
   const Vec3 offset = position - exit.point.surface.position;
   double sum = 0;
-  for (const Vec3& axis : exit.axes) {
-    const double along = glm::dot(offset, axis);
-    const double radius = std::max(glm::length(offset - along * axis), 1e-100);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Exit::Axis& axis = exit.axes[a];
+    const double along = glm::dot(offset, axis.direction);
+    const double radius = std::max(glm::length(offset - along * axis.direction), 1e-100);
     const bool near = std::abs(along) <= exit.near_limit + near_radii * radius;
-    sum += (near ? 1 : far_probability) * std::abs(glm::dot(normal, axis)) * radius_density(exit, radius) /
-           radius;
+    sum += (near ? 1 : far_probability) * std::abs(glm::dot(normal, axis.direction)) *
+           radius_density(exit, a, radius) / (radius * 2 * half_angle(axis, radius));
   }
-  return exit.area_probability / area_.area() + (1 - exit.area_probability) * sum / (3 * 2 * pi);
+  return exit.area_probability / area_.area() + (1 - exit.area_probability) * sum / 3;
 }
 
 double ProbeSampler::density(const Exit& exit, const SurfacePoint& entry) const {
@@ -171,11 +205,11 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
     if (!(distance > 0)) return;
     const double expected = density(exit, position, mesh.geometric_normal(triangle));
     candidates.push_back(
-        {triangle, barycentric, expected, radius_density(exit, distance) / (distance * expected)});
+        {triangle, barycentric, expected, radius_density(exit, 0, distance) / (distance * expected)});
   };
   Vec2 choice = u.choice;
   if (decide(choice.x, exit.area_probability)) {
-    const auto [triangle, barycentric] = area_.sample(u.area);
+    const auto [triangle, barycentric] = area_.sample(u.disk);
     add(triangle, barycentric);
   } else if (const std::optional<Probe> probe = choose(exit, choice, u.disk)) {
     target_.rays->all_hits(target_.object, probe->ray, hits);
@@ -215,7 +249,6 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, c
   EntryRandom u;
   u.choice = sampler.get_2d(Dimension::entry_strategy, occurrence);
   u.disk = sampler.get_2d(Dimension::entry_radius, occurrence);
-  u.area = sampler.get_2d(Dimension::entry_area, occurrence);
   return sample_entry(exit, u);
 }
 

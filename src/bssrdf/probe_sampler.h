@@ -25,9 +25,8 @@ struct ProbeTarget {
 
 /// Random numbers of one draw, uniform in [0, 1).
 struct EntryRandom {
-  Vec2 choice{0};  // x: strategy, axis, channel; y: far part of the chord, hit
-  Vec2 disk{0};    // radius, angle
-  Vec2 area{0};    // a point of the object, for that strategy
+  Vec2 choice{0};  // x: strategy, axis, component of the radius; y: far part of the chord, hit
+  Vec2 disk{0};    // radius and angle, or the point of the area strategy
 };
 
 /// Where light may have entered, with the weight that makes sums of weight * E(entry) unbiased for the
@@ -46,7 +45,8 @@ struct Probe {
 /// Draws entry points for an exit: a probe ray along one of three axes through a disk around the exit, whose
 /// radius follows the profile, or a point uniform by area. Every strategy's density is known at every point
 /// of the surface, so all are combined by the balance heuristic (Veach 1997), and the density is positive
-/// wherever S_V is. Thread-safe; no heap allocation per draw once a thread's hit list has grown.
+/// wherever S_V is. docs/probe_sampling.md has the reasons and the figures. Thread-safe; no heap allocation
+/// per draw once a thread's hit list has grown.
 class ProbeSampler {
  public:
   /// `model` and what `target` points to outlive the sampler.
@@ -54,18 +54,23 @@ class ProbeSampler {
 
   /// What draws need of an exit, computed once.
   struct Exit {
-    /// Radii around an axis: one channel at one albedo.
+    /// Radii for one channel at one albedo.
     struct Component {
       int level = 0;       // of the distance table
       double sigma_t = 0;  // 1/m
       double probability = 0;
-      double reach = 1;  // the part of the distribution within radius_limit
+      std::array<double, 3> reach{1, 1,
+                                  1};  // per axis: the share of the distribution within the axis's limit
+    };
+    /// A probe direction with its disk, seen from which the object's bounding sphere is a circle.
+    struct Axis {
+      Vec3 direction{0}, across{0}, aside{0};  // orthonormal; across points to the circle's centre
+      double centre = 0;                       // m: distance of the circle's centre
     };
     BssrdfPoint point;
-    std::array<Vec3, 3> axes;
+    std::array<Axis, 3> axes;
     std::array<Component, 6> components;
     int component_count = 0;
-    double radius_limit = 0;      // m: no point of the object lies farther
     double near_limit = 0;        // m: beyond it along the chord, only some probes look
     double area_probability = 0;  // of the area strategy
   };
@@ -95,8 +100,9 @@ class ProbeSampler {
   struct Candidate;
   std::span<Candidate> draw(const Exit& exit, const EntryRandom& u) const;
   EntrySample finish(const Exit& exit, const Candidate& candidate, double factor) const;
-  /// Density of the radius per metre.
-  double radius_density(const Exit& exit, double radius) const;
+  void add_components(Exit& exit, const Rgb& typical) const;
+  double radius_density(const Exit& exit, std::size_t axis, double radius) const;
+  double half_angle(const Exit::Axis& axis, double radius) const;
   double density(const Exit& exit, const Vec3& position, const Vec3& normal) const;
   bool in_medium(uint32_t triangle) const;
 
