@@ -6,11 +6,12 @@
 #include "core/vec.h"
 #include "texture/albedo_field.h"
 
-/// alpha = mean + amplitude cos(2 pi frequency . uv), per channel mean and amplitude: its average under a Gaussian is
-/// known exactly. Amplitude 0 is the constant field.
+/// alpha = mean + amplitude cos(2 pi frequency . uv), per channel mean and amplitude: its average under a
+/// Gaussian is known exactly. Amplitude 0 is the constant field.
 class CosineAlbedo final : public alabaster::AlbedoField {
  public:
-  CosineAlbedo(const alabaster::Rgb& mean, const alabaster::Rgb& amplitude = {}, alabaster::Vec2 frequency = {1, 0})
+  CosineAlbedo(const alabaster::Rgb& mean, const alabaster::Rgb& amplitude = {},
+               alabaster::Vec2 frequency = {1, 0})
       : mean_(mean), amplitude_(amplitude), frequency_(frequency) {}
   alabaster::Rgb at(const alabaster::SurfacePoint& point) const override { return value(point.uv, 0); }
   alabaster::Rgb filtered(const alabaster::KernelFootprint& footprint) const override {
@@ -19,7 +20,8 @@ class CosineAlbedo final : public alabaster::AlbedoField {
     return value(footprint.uv, 0.5 * sigma * sigma * glm::dot(per_metre, per_metre));
   }
   alabaster::Rgb max() const override {
-    return {mean_.r + std::abs(amplitude_.r), mean_.g + std::abs(amplitude_.g), mean_.b + std::abs(amplitude_.b)};
+    return {mean_.r + std::abs(amplitude_.r), mean_.g + std::abs(amplitude_.g),
+            mean_.b + std::abs(amplitude_.b)};
   }
 
  private:

@@ -7,8 +7,8 @@
 #include "core/vec.h"
 #include "optics/profile_table.h"
 
-/// A profile in closed form, shaped like the baseline's: three exponentials, R = sum a_k lambda_k exp(-lambda_k rho) /
-/// (2 pi rho), the last with the diffusion length, A(0) = 0, A(1) = 1.
+/// A profile in closed form, shaped like the baseline's: three exponentials, R = sum a_k lambda_k
+/// exp(-lambda_k rho) / (2 pi rho), the last with the diffusion length, A(0) = 0, A(1) = 1.
 class AnalyticProfile final : public alabaster::ProfileTable {
  public:
   double g() const override { return 0.3; }
@@ -54,6 +54,8 @@ class AnalyticProfile final : public alabaster::ProfileTable {
   };
   static std::array<Component, 3> components(double albedo) {
     const double diffusion = std::max(std::sqrt(3 * (1 - albedo) * (1 - 0.3 * albedo)), 0.02);
-    return {{{0.05, 4}, {0.15 * std::pow(albedo, 3), 1.2}, {0.8 * std::pow(albedo, 39), std::min(diffusion, 1.2)}}};
+    return {{{0.05, 4},
+             {0.15 * std::pow(albedo, 3), 1.2},
+             {0.8 * std::pow(albedo, 39), std::min(diffusion, 1.2)}}};
   }
 };
