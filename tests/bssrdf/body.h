@@ -7,6 +7,7 @@
 #include "bssrdf/area_sampler.h"
 #include "bssrdf/placements.h"
 #include "bssrdf/probe_sampler.h"
+#include "core/frame.h"
 #include "core/rng.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
