@@ -9,7 +9,7 @@ int process_exit_code = 0;
 }
 
 void add_all_commands(CLI::App& app) {
-  static_cast<void>(app);
+  add_info_command(app);
 }
 
 int exit_code() {

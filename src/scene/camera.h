@@ -9,7 +9,8 @@ namespace alabaster {
 
 /// Perspective (or orthographic) camera. Pixel (0, 0) is top left.
 struct Camera {
-  std::string name;
+  std::string name;   // of the node that holds it, or its own
+  std::string alias;  // another name it goes by
   Vec3 position{0, 0, 1};
   Vec3 direction{0, 0, -1};        // unit
   Vec3 up{0, 1, 0};                // any vector not parallel to direction

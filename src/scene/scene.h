@@ -78,6 +78,7 @@ struct Scene {
   RayScene rays;                // object ids are indices into objects
   BoundingBox bounds;
   std::vector<std::string> warnings;
+  std::size_t mesh_count = 0, texture_count = 0;  // of the model's file
 
   const Material& material(const Hit& hit) const {
     return materials[objects[hit.object].mesh.materials[hit.triangle]];

@@ -2,22 +2,14 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/media.h"
 #include "scene/scene.h"
 
 namespace alabaster {
-
-/// A length as the command line gives it: metres, one per channel, or per cent of the scene's box diagonal.
-struct LengthSpecification {
-  Rgb value;  // m, or fraction of the diagonal
-  bool relative = false;
-};
-/// Parses "0.01", "0.01,0.005,0.002" or "0.5%"; throws InputError.
-LengthSpecification parse_length(const std::string& text);
 
 /// What overrides a model's own materials.
 struct LoadOptions {
