@@ -1,4 +1,3 @@
-#include "bssrdf/probe_sampler.h"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -6,8 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "bssrdf/area_sampler.h"
-#include "bssrdf/placements.h"
+#include "bssrdf/body.h"
 #include "core/rng.h"
 #include "core/statistics.h"
 #include "geometry/shapes.h"
@@ -18,33 +16,6 @@
 using namespace alabaster;
 
 namespace {
-
-/// A mesh with everything that entry sampling needs. Lengths in metres.
-struct Body {
-  explicit Body(TriangleMesh given) : mesh(std::move(given)) {
-    rays.add(mesh);
-    rays.commit();
-  }
-  ProbeTarget target() const { return {&rays, &mesh, 0, {}}; }
-  TriangleMesh mesh;
-  RayScene rays;
-};
-
-EntryRandom draw_random(Rng& rng) {
-  return {{rng.uniform(), rng.uniform()}, {rng.uniform(), rng.uniform()}};
-}
-
-/// Points spread over the mesh, away from the border of open ones.
-std::vector<SurfacePoint> some_exits(const TriangleMesh& mesh, int count, uint64_t seed) {
-  const AreaSampler area(mesh, [](uint32_t) { return true; });
-  Rng rng(seed);
-  std::vector<SurfacePoint> exits;
-  for (int k = 0; k < count; ++k) {
-    const auto [triangle, barycentric] = area.sample({rng.uniform(), rng.uniform()});
-    exits.push_back(mesh.surface_point(triangle, barycentric));
-  }
-  return exits;
-}
 
 struct Shape {
   const char* name;
@@ -71,14 +42,14 @@ TEST_CASE("entries are as dense as density() states, triangle by triangle", "[bs
   for (const Shape& shape : shapes()) {
     const Body body(shape.mesh);
     const ProbeSampler sampler(*model, body.target());
-    for (const SurfacePoint& point : some_exits(body.mesh, 2, 5)) {
+    for (const SurfacePoint& point : points_on(body.mesh, 2, 5)) {
       const auto exit = sampler.prepare(medium.point(point));
       REQUIRE(exit);
       std::vector<double> sum(body.mesh.triangle_count()), squares(sum.size());
       std::array<EntrySample, 32> entries;
       Rng rng(11);
       for (int i = 0; i < count; ++i) {
-        const std::size_t found = sampler.sample_entries(exit->point, draw_random(rng), entries);
+        const std::size_t found = sampler.sample_entries(exit->point, entry_random(rng), entries);
         REQUIRE(found < entries.size());
         for (std::size_t k = 0; k < found; ++k) sum[entries[k].point.surface.triangle] += 1;
       }
@@ -105,6 +76,55 @@ TEST_CASE("entries are as dense as density() states, triangle by triangle", "[bs
       // On the plane a draw has at most one entry, so the counts are multinomial.
       if (std::string_view(shape.name) == "plane")
         CHECK(chi_square_p_value(statistic, tested) > sidak(0.01, 6));
+    }
+  }
+}
+
+TEST_CASE("one entry, and all entries, are unbiased for the integral over the surface", "[bssrdf]") {
+  const AnalyticProfile profile;
+  struct Case {
+    const char* name;
+    TriangleMesh mesh;
+    Rgb mean, amplitude;
+  };
+  std::vector<Case> cases;
+  cases.push_back({"sphere", make_sphere(2, 20), Rgb(0.7, 0.9, 0.5), Rgb(0.25, 0.09, 0.2)});
+  cases.push_back({"folded sheet", make_folded_sheet(6, 1.2, 0.2, 10), Rgb(0.8), Rgb(0.18)});
+  cases.push_back({"sphere of 1 at 0.999", make_sphere(1, 20), Rgb(0.999), Rgb(0)});
+  cases.push_back({"slab of 1 at 0.999", make_slab(12, 1, 6), Rgb(0.999), Rgb(0)});
+  const int tests = 2 * static_cast<int>(cases.size() * std::size(all_models));
+  for (const Case& c : cases) {
+    const Body body(c.mesh);
+    const CosineAlbedo albedo(c.mean, c.amplitude, {2, 1});
+    const BssrdfMedium medium{&profile, Rgb(1, 1.5, 0.8), &albedo};
+    BssrdfOptions options;
+    options.placement = &body.placement;
+    for (const char* name : all_models) {
+      const auto model = make_bssrdf(name, medium, options);
+      const BssrdfPoint exit = medium.point(points_on(body.mesh, 1, 3).front());
+      const auto irradiance = [](const Vec3& p) { return 1 + 0.5 * std::sin(p.x + 2 * p.y) * std::cos(p.z); };
+      const auto integrand = [&](uint32_t triangle, Vec2 barycentric) {
+        const SurfacePoint entry = body.mesh.surface_point(triangle, barycentric);
+        return irradiance(entry.position) * model->evaluate(medium.point(entry), exit).mean();
+      };
+      const double exact = TriangleIntegral(body.mesh, integrand, 2e-6).over_all();
+
+      const ProbeSampler sampler(*model, body.target());
+      RunningMoments one, all;
+      Rng rng(17);
+      std::array<EntrySample, 2> entries;  // few, so that picking among more is tested as well
+      for (int i = 0; i < 8000; ++i) {
+        const auto entry = sampler.sample_entry(exit, entry_random(rng));
+        one.add(entry ? entry->weight.mean() * irradiance(entry->point.surface.position) : 0);
+        const std::size_t count = sampler.sample_entries(exit, entry_random(rng), entries);
+        double sum = 0;
+        for (std::size_t k = 0; k < count; ++k)
+          sum += entries[k].weight.mean() * irradiance(entries[k].point.surface.position);
+        all.add(sum);
+      }
+      CAPTURE(c.name, name, exact, one.mean(), one.standard_error(), all.mean(), all.standard_error());
+      CHECK(two_sided_normal_p_value((one.mean() - exact) / one.standard_error()) > sidak(0.01, tests));
+      CHECK(two_sided_normal_p_value((all.mean() - exact) / all.standard_error()) > sidak(0.01, tests));
     }
   }
 }
