@@ -1,10 +1,10 @@
 #include "texture/gaussian_pyramid.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "core/parallel.h"
 
@@ -12,8 +12,9 @@ namespace alabaster {
 
 namespace {
 
-// Four floats that the compiler keeps in one register (GCC and Clang vector extension).
+// One texel, and two, that the compiler keeps in one register (GCC and Clang vector extension).
 using Float4 = float __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
 
 // Spacings: level 1 has 2 texels per sample, further ones sqrt(2.5) times more each, so that all of them
 // together are 0.42 of the texture. Every sample averages a Gaussian of 0.4 spacings squared, and the kernel
@@ -22,60 +23,102 @@ using Float4 = float __attribute__((vector_size(16)));
 constexpr double first_spacing = 2, spacing_ratio = 1.58113883008419;
 constexpr double level_blur = 0.4, narrowest_kernel = 0.4, widest_kernel = 3.2;
 constexpr int margin = 5;
-constexpr int max_taps = 10;
 // Sums of weights below this are too far from any covered texel to be meant.
 constexpr float least_weight = 1e-6f;
-// Below it the finest level's own reconstruction is blended with this kernel.
-constexpr double bell_from = 0.45;
+// Kernels at least this wide are bells; narrower ones, at the finest level only, are its own reconstruction
+// blurred.
+constexpr float narrowest_bell = 1.0f / 3;
 
 double reconstruction_variance(Filter filter) {
   return filter == Filter::nearest ? 1.0 / 12 : 1.0 / 6;  // box; tent, averaged over the texel
 }
 
+// Weights of up to twelve taps along one axis, not normalised.
+struct alignas(16) Weights {
+  Float4 block[3];
+  float operator[](int i) const { return block[i / 4][i % 4]; }
+};
+
 // Weights of `taps` neighbouring samples around a position `fraction` of a spacing after the middle pair's
 // first, for a kernel of that variance (spacings squared): a bell that falls to exactly 0 at taps / 2, so
-// that the sum is continuous when the taps move on by one.
+// that the result is continuous when the taps move on by one. Returns their sum.
 template <int taps>
-void bell_weights(float fraction, float variance, float* weights) {
+float bell_weights(float fraction, float variance, Weights& weights) {
   constexpr float reach = taps / 2;
-  const float t = 8 * variance / (reach * reach);
+  const float t = variance * (8 / (reach * reach));
   // Subtracting the pedestal narrows the bell; this widens it again (a fit, within 0.1 % for t <= 1.05).
   const float nominal = variance * (1 + t * t * t * (-0.0867341f + t * (0.1663139f + t * 0.1145253f)));
   // (1 - x^2 / (67 v))^32 has variance v and is all but Gaussian (excess kurtosis -0.09).
   const float scale = 1 / (67 * nominal);
-  const auto bell = [scale](float x) {
-    float b = std::max(0.0f, 1 - x * x * scale);
+  const auto bell = [scale](auto x) {
+    auto b = 1 - x * x * scale;
+    b = b > 0 ? b : b - b;
     b *= b, b *= b, b *= b, b *= b;
     return b * b;
   };
   const float pedestal = bell(reach);
-  float sum = 0;
-  for (int i = 0; i < taps; ++i) {
-    weights[i] = std::max(0.0f, bell(static_cast<float>(i + 1) - reach - fraction) - pedestal);
-    sum += weights[i];
+  const float nearest = 1 - reach - fraction;  // offset of the first tap
+  Float4 x = Float4{0, 1, 2, 3} + nearest, sum{};
+  for (int i = 0; i < (taps + 3) / 4; ++i, x += 4.0f) {
+    const Float4 above = bell(x) - pedestal;
+    weights.block[i] = above > 0 ? above : Float4{};
+    sum += weights.block[i];
   }
-  const float normalise = 1 / sum;
-  for (int i = 0; i < taps; ++i) weights[i] *= normalise;
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
+// The finest level's own reconstruction (tent or box) convolved with a tent of variance `blur` <= 1/4, which
+// stands for the Gaussian: exact at kinks within 2.3 % of what the blur does there.
+Float4 blurred_tent_weights(float fraction, float blur) {
+  const float width = std::sqrt(6 * blur);
+  const auto corner = [width](float x) {  // what blurring adds to a ramp that starts x away
+    const float inside = std::max(0.0f, width - x);
+    return inside > 0 ? inside * inside * inside / (6 * width * width) : 0.0f;
+  };
+  const float low = corner(fraction), high = corner(1 - fraction);
+  return Float4{low, 1 - fraction + high - 2 * low, fraction + low - 2 * high, high};
+}
+
+Float4 blurred_box_weights(float fraction, float blur) {
+  const float width = std::sqrt(6 * blur);
+  const auto step = [width](float x) {  // the blurred step at x
+    if (x <= -width) return 0.0f;
+    if (x >= width) return 1.0f;
+    const float inside = width - std::abs(x), tail = inside * inside / (2 * width * width);
+    return x < 0 ? tail : 1 - tail;
+  };
+  const float edges[3] = {step(-0.5f - fraction), step(0.5f - fraction), step(1.5f - fraction)};
+  return Float4{edges[0], edges[1] - edges[0], edges[2] - edges[1], 1 - edges[2]};
+}
+
+// The weighted sum over taps x taps texels, two neighbours at a time.
 template <int taps>
-Float4 gather_taps(const Vec4f* corner, std::size_t stride, const float* u_weights, const float* v_weights) {
-  Float4 sum{};
+Float4 gather_taps(const Vec4f* corner, std::size_t stride, const Weights& u_weights,
+                   const Weights& v_weights) {
+  Float8 pair_weights[taps / 2];
+  for (int i = 0; i < taps / 2; ++i) {
+    const float a = u_weights[2 * i], b = u_weights[2 * i + 1];
+    pair_weights[i] = Float8{a, a, a, a, b, b, b, b};
+  }
+  Float8 sum{};
   for (int j = 0; j < taps; ++j, corner += stride) {
-    Float4 row{};
-    for (int i = 0; i < taps; ++i) {
-      Float4 texel;
-      std::memcpy(&texel, corner + i, sizeof texel);
-      row += texel * u_weights[i];
+    Float8 row{};
+    for (int i = 0; i < taps / 2; ++i) {
+      Float8 pair;
+      std::memcpy(&pair, corner + 2 * i, sizeof pair);
+      row += pair * pair_weights[i];
     }
     sum += row * v_weights[j];
   }
-  return sum;
+  Float4 halves[2];
+  std::memcpy(halves, &sum, sizeof halves);
+  return halves[0] + halves[1];
 }
 
 // A texture coordinate brought into [0, 1]; NaN becomes 0.
 double wrap_coordinate(double s, Wrap wrap) {
-  if (wrap == Wrap::clamp) return s > 0 ? std::min(s, 1.0) : 0.0;
+  // A little inside the far edge: there the nearest texel is the last, not the one after.
+  if (wrap == Wrap::clamp) return s > 0 ? std::min(s, 1 - 1e-6) : 0.0;
   if (wrap == Wrap::mirror) {
     s -= 2 * std::floor(0.5 * s);
     if (s > 1) s = 2 - s;
@@ -85,9 +128,20 @@ double wrap_coordinate(double s, Wrap wrap) {
   return s >= 0 && s <= 1 ? s : 0;
 }
 
-// Index into a row for the margin of a level: -1 where there is no surface.
-int margin_index(int i, int size, Wrap wrap) {
-  return wrap == Wrap::clamp && (i < 0 || i >= size) ? -1 : wrap_index(i, size, wrap);
+// The samples of an axis that are computed; the others repeat them. Past a clamped edge, where there is no
+// surface, a coarser level still holds what its Gaussians see of the inside.
+struct Range {
+  int begin, end;
+};
+Range computed_range(int size, Wrap wrap) {
+  return wrap == Wrap::clamp ? Range{-margin, size + margin} : Range{0, size};
+}
+
+// Index into the computed samples of an axis, or nothing.
+std::optional<int> computed_index(int i, int size, Wrap wrap) {
+  if (wrap != Wrap::clamp) return wrap_index(i, size, wrap);
+  if (i < -margin || i >= size + margin) return std::nullopt;
+  return i;
 }
 
 // One sample of a coarser axis as a sum over the finer one.
@@ -96,25 +150,16 @@ struct Resampling {
   std::vector<float> weights;
 };
 
-std::vector<Resampling> gaussian_resampling(int from, int to, double variance) {
-  std::vector<Resampling> rows(static_cast<std::size_t>(to));
-  const double ratio = static_cast<double>(from) / to, reach = 4.6 * std::sqrt(variance);
-  for (int j = 0; j < to; ++j) {
-    Resampling& row = rows[static_cast<std::size_t>(j)];
-    if (from == to) {
-      row = {j, {1.0f}};
-      continue;
-    }
-    const double centre = (j + 0.5) * ratio - 0.5;
-    row.first = static_cast<int>(std::ceil(centre - reach));
-    const int last = static_cast<int>(std::floor(centre + reach));
-    double sum = 0;
-    for (int i = row.first; i <= last; ++i) sum += std::exp(-0.5 * (i - centre) * (i - centre) / variance);
-    for (int i = row.first; i <= last; ++i)
-      row.weights.push_back(
-          static_cast<float>(std::exp(-0.5 * (i - centre) * (i - centre) / variance) / sum));
-  }
-  return rows;
+Resampling gaussian_resampling(int from, int to, int j, double variance) {
+  if (from == to) return {j, {1.0f}};
+  const double centre = (j + 0.5) * from / to - 0.5, reach = 4.6 * std::sqrt(variance);
+  Resampling row{static_cast<int>(std::ceil(centre - reach)), {}};
+  const int last = static_cast<int>(std::floor(centre + reach));
+  const auto gaussian = [&](int i) { return std::exp(-0.5 * (i - centre) * (i - centre) / variance); };
+  double sum = 0;
+  for (int i = row.first; i <= last; ++i) sum += gaussian(i);
+  for (int i = row.first; i <= last; ++i) row.weights.push_back(static_cast<float>(gaussian(i) / sum));
+  return row;
 }
 
 // The next coarser extent of an axis. It stays when too few samples would be left, or when the step would be
@@ -146,15 +191,13 @@ GaussianPyramid::Level GaussianPyramid::allocate(int width, int height) {
 
 void GaussianPyramid::fill_margin(Level& level) const {
   const int w = level.extent[0], h = level.extent[1];
-  for (int y = -margin; y < h + margin; ++y) {
-    const int from_y = margin_index(y, h, wrap_[1]);
-    const bool inner_row = y >= 0 && y < h;
+  const Range u = computed_range(w, wrap_[0]), v = computed_range(h, wrap_[1]);
+  for (int y = -margin; y < h + margin; ++y)
     for (int x = -margin; x < w + margin; ++x) {
-      if (inner_row && x == 0) x = w;
-      const int from_x = margin_index(x, w, wrap_[0]);
-      *level.sample(x, y) = from_x < 0 || from_y < 0 ? Vec4f(0) : *level.sample(from_x, from_y);
+      if (y >= v.begin && y < v.end && x == u.begin) x = u.end;
+      if (x < w + margin)
+        *level.sample(x, y) = *level.sample(*computed_index(x, w, wrap_[0]), *computed_index(y, h, wrap_[1]));
     }
-  }
 }
 
 GaussianPyramid::GaussianPyramid(const TexelArray& texels, std::vector<float> coverage, Wrap wrap_u,
@@ -186,34 +229,35 @@ GaussianPyramid::GaussianPyramid(const TexelArray& texels, std::vector<float> co
 GaussianPyramid::Level GaussianPyramid::coarser(const Level& level, int width, int height) const {
   const int extent[2] = {width, height};
   Level result = allocate(width, height);
-  std::array<std::vector<Resampling>, 2> rows;
+  double variance[2];  // of the Gaussian that leads from the finer level to this one, in its spacings
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    const int from = level.extent[axis], to = extent[axis];
-    const double spacing = static_cast<double>(from) / to;  // of the finer level's samples
+    const double spacing = static_cast<double>(level.extent[axis]) / extent[axis];
     result.samples_per_texel[axis] = level.samples_per_texel[axis] / spacing;
-    result.blur[axis] = from == to ? level.blur[axis] : level_blur;
-    rows[axis] = gaussian_resampling(from, to, level_blur * spacing * spacing - level.blur[axis]);
+    result.blur[axis] = spacing == 1 ? level.blur[axis] : level_blur;
+    variance[axis] = level_blur * spacing * spacing - level.blur[axis];
   }
-  const auto filter_axis = [](const std::vector<Resampling>& taps, int size, Wrap wrap, int j, auto&& read) {
-    const Resampling& row = taps[static_cast<std::size_t>(j)];
-    Vec4 sum(0);
+  const auto filter_axis = [&](std::size_t axis, int j, auto&& read) {
+    const int from = level.extent[axis];
+    const Resampling row = gaussian_resampling(from, extent[axis], j, variance[axis]);
     for (std::size_t k = 0; k < row.weights.size(); ++k)
-      if (const int i = margin_index(row.first + static_cast<int>(k), size, wrap); i >= 0)
-        sum += static_cast<double>(row.weights[k]) * Vec4(*read(i));
-    return Vec4f(sum);
+      if (const auto i = computed_index(row.first + static_cast<int>(k), from, wrap_[axis]))
+        read(*i, row.weights[k]);
   };
+  const Range u = computed_range(width, wrap_[0]), v = computed_range(height, wrap_[1]);
+  const Range finer_v = computed_range(level.extent[1], wrap_[1]);
   Level narrow = allocate(width, level.extent[1]);  // filtered along u alone
-  parallel_for(static_cast<std::size_t>(level.extent[1]), 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < width; ++x)
-        *narrow.sample(x, y) =
-            filter_axis(rows[0], level.extent[0], wrap_[0], x, [&](int i) { return level.sample(i, y); });
+  parallel_for(static_cast<std::size_t>(u.end - u.begin), 8, [&](std::size_t begin, std::size_t end) {
+    for (int x = u.begin + static_cast<int>(begin); x < u.begin + static_cast<int>(end); ++x)
+      filter_axis(0, x, [&](int i, float weight) {
+        for (int y = finer_v.begin; y < finer_v.end; ++y)
+          *narrow.sample(x, y) += weight * *level.sample(i, y);
+      });
   });
-  parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < width; ++x)
-        *result.sample(x, y) =
-            filter_axis(rows[1], level.extent[1], wrap_[1], y, [&](int i) { return narrow.sample(x, i); });
+  parallel_for(static_cast<std::size_t>(v.end - v.begin), 8, [&](std::size_t begin, std::size_t end) {
+    for (int y = v.begin + static_cast<int>(begin); y < v.begin + static_cast<int>(end); ++y)
+      filter_axis(1, y, [&](int i, float weight) {
+        for (int x = u.begin; x < u.end; ++x) *result.sample(x, y) += weight * *narrow.sample(x, i);
+      });
   });
   fill_margin(result);
   return result;
@@ -228,11 +272,12 @@ void GaussianPyramid::add_coarser_levels() {
     const int h = coarser_extent(height(), last.extent[1], spacing, wrap_[1]);
     if (w == last.extent[0] && h == last.extent[1]) continue;
     Level next = coarser(last, w, h);
+    double from = 0;
     for (std::size_t axis = 0; axis < 2; ++axis)
       if (next.extent[axis] != last.extent[axis])
-        next.first_variance =
-            std::max(next.first_variance, (level_blur + narrowest_kernel) /
-                                              (next.samples_per_texel[axis] * next.samples_per_texel[axis]));
+        from = std::max(from, (level_blur + narrowest_kernel) /
+                                  (next.samples_per_texel[axis] * next.samples_per_texel[axis]));
+    level_from_.push_back(from);
     levels_.push_back(std::move(next));
   }
   const Level& coarsest = levels_.back();
@@ -255,7 +300,7 @@ std::size_t GaussianPyramid::memory_bytes() const {
 Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
   const double total = variance + reconstruction_variance(filter_);
   std::size_t k = 0;
-  while (k + 1 < levels_.size() && total >= levels_[k + 1].first_variance) ++k;
+  while (k < level_from_.size() && total >= level_from_[k]) ++k;
   const Level& level = levels_[k];
 
   int first[2];
@@ -268,35 +313,35 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
     const double scale = level.samples_per_texel[axis];
     kernel[axis] = static_cast<float>(std::min(total * scale * scale - level.blur[axis], widest_kernel));
   }
-  alignas(16) float weights[2][max_taps + 2];
+  Weights weights[2];
+  float scale = 1;  // of the result, for weights that are not normalised
   const auto gather_bell = [&]<int taps>(std::integral_constant<int, taps>) {
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      bell_weights<taps>(fraction[axis], kernel[axis], weights[axis]);
+    scale = 1 / (bell_weights<taps>(fraction[0], kernel[0], weights[0]) *
+                 bell_weights<taps>(fraction[1], kernel[1], weights[1]));
     return gather_taps<taps>(level.sample(first[0] - taps / 2 + 1, first[1] - taps / 2 + 1), level.stride,
                              weights[0], weights[1]);
   };
   const float widest = std::max(kernel[0], kernel[1]);
   Float4 sum;
-  if (widest > 2.0f) {
+  if (widest > 1.8f) {
     sum = gather_bell(std::integral_constant<int, 10>());
-  } else if (widest > 1.1f) {
+  } else if (widest > 0.95f) {
     sum = gather_bell(std::integral_constant<int, 8>());
-  } else if (widest > static_cast<float>(bell_from)) {
+  } else if (widest > 0.45f) {
     sum = gather_bell(std::integral_constant<int, 6>());
   } else {
-    // Between the finest level's own reconstruction and the narrowest bell, by variance.
-    const double own = reconstruction_variance(filter_);
+    const auto own = static_cast<float>(reconstruction_variance(filter_));
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      float* w = weights[axis];
-      bell_weights<4>(fraction[axis], static_cast<float>(bell_from), w);
-      const auto share = static_cast<float>(std::clamp((kernel[axis] - own) / (bell_from - own), 0.0, 1.0));
-      for (int i = 0; i < 4; ++i) w[i] *= share;
-      const float upper = filter_ == Filter::linear ? fraction[axis] : (fraction[axis] < 0.5f ? 0.0f : 1.0f);
-      w[1] += (1 - share) * (1 - upper);
-      w[2] += (1 - share) * upper;
+      if (kernel[axis] >= narrowest_bell)
+        scale /= bell_weights<4>(fraction[axis], kernel[axis], weights[axis]);
+      else
+        weights[axis].block[0] = filter_ == Filter::linear
+                                     ? blurred_tent_weights(fraction[axis], kernel[axis] - own)
+                                     : blurred_box_weights(fraction[axis], kernel[axis] - own);
     }
     sum = gather_taps<4>(level.sample(first[0] - 1, first[1] - 1), level.stride, weights[0], weights[1]);
   }
+  sum *= scale;
   Vec4f result;
   std::memcpy(&result, &sum, sizeof result);
   if (total > mean_from_) {
@@ -319,14 +364,14 @@ Rgb GaussianPyramid::resolve(Vec2 st, double sigma_texels, const Vec4f& sum) con
 Rgb GaussianPyramid::at(Vec2 st) const {
   const Level& level = levels_.front();
   int first[2];
-  float weights[2][2];
+  Weights weights[2];
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double q = wrap_coordinate(st[static_cast<int>(axis)], wrap_[axis]) * level.extent[axis] - 0.5;
     const double below = std::floor(q);
     const auto fraction = static_cast<float>(q - below);
     first[axis] = static_cast<int>(below);
-    weights[axis][1] = filter_ == Filter::linear ? fraction : (fraction < 0.5f ? 0.0f : 1.0f);
-    weights[axis][0] = 1 - weights[axis][1];
+    const float upper = filter_ == Filter::linear ? fraction : (fraction < 0.5f ? 0.0f : 1.0f);
+    weights[axis].block[0] = Float4{1 - upper, upper, 0, 0};
   }
   const Float4 sum = gather_taps<2>(level.sample(first[0], first[1]), level.stride, weights[0], weights[1]);
   Vec4f result;
@@ -365,20 +410,25 @@ Rgb GaussianPyramid::filtered(Vec2 st, const Mat2& covariance) const {
     return resolve(st, std::sqrt(wide), sum);
   }
   // Evenly spaced taps, no farther apart than the blur of one can hide.
-  constexpr int most_each_side = 4;
+  constexpr int most_each_side = 8;
   constexpr double closeness = 1.8, reach = 2.5;
-  const double deviation = std::sqrt(extra);
-  int each_side = static_cast<int>(std::ceil(reach * deviation / (closeness * std::sqrt(blur))));
+  int each_side = static_cast<int>(std::ceil(reach * std::sqrt(extra / blur) / closeness));
   if (each_side > most_each_side) {
     each_side = most_each_side;
-    const double needed = reach * deviation / (closeness * most_each_side);
-    narrow = std::max(narrow, needed * needed - reconstruction_variance(filter_));
+    const double shortest = reach / (closeness * most_each_side);  // blur over extra, as deviations
+    narrow = std::max(narrow, shortest * shortest * extra - reconstruction_variance(filter_));
+    extra = wide - narrow;
   }
   const double spacing = reach / each_side;  // in deviations
-  double weight_sum = 0;
-  for (int i = -each_side; i <= each_side; ++i) weight_sum += std::exp(-0.5 * (i * spacing) * (i * spacing));
-  for (int i = -each_side; i <= each_side; ++i)
-    tap(i * spacing * deviation, std::exp(-0.5 * (i * spacing) * (i * spacing)) / weight_sum);
+  double weights[2 * most_each_side + 1], total = 0, variance = 0;
+  for (int i = -each_side; i <= each_side; ++i) {
+    const double weight = std::exp(-0.5 * (i * spacing) * (i * spacing));
+    weights[i + each_side] = weight;
+    total += weight;
+    variance += weight * i * i;
+  }
+  const double step = std::sqrt(extra * total / variance);  // so that what was cut off does not narrow it
+  for (int i = -each_side; i <= each_side; ++i) tap(i * step, weights[i + each_side] / total);
   return resolve(st, std::sqrt(wide), sum);
 }
 

@@ -27,8 +27,8 @@ class GaussianPyramid {
   /// The average of at() under a Gaussian of standard deviation `sigma` texels (of level 0). From about half
   /// the texture on (its whole, where it is mirrored or clamped) it runs into mean().
   Rgb filtered(Vec2 st, double sigma_texels) const;
-  /// Gaussian with covariance in texels; several taps along the long axis when it is stretched, at most nine:
-  /// beyond a ratio of about 7 the short axis is blurred as well.
+  /// Gaussian with covariance in texels; several taps along the long axis when it is stretched, at most 17:
+  /// beyond a ratio of about 6 the short axis is blurred as well.
   Rgb filtered(Vec2 st, const Mat2& covariance_texels) const;
 
   /// Largest and coverage-weighted mean value over covered texels.
@@ -43,7 +43,6 @@ class GaussianPyramid {
     int extent[2] = {0, 0};         // samples along u and v
     double samples_per_texel[2]{};  // extent over level 0's
     double blur[2]{};               // variance of what a sample averages, in its own spacings squared
-    double first_variance = 0;      // smallest total variance this level serves, texels of level 0
     std::size_t stride = 0;         // padded row
     std::vector<Vec4f> texels;      // rgb * weight, weight; with a margin that continues the wrap
 
@@ -59,6 +58,7 @@ class GaussianPyramid {
   Rgb resolve(Vec2 st, double sigma_texels, const Vec4f& sum) const;
 
   std::vector<Level> levels_;
+  std::vector<double> level_from_;  // smallest total variance served by level 1, 2, ...; texels of level 0
   Wrap wrap_[2];
   Filter filter_;
   double mean_from_ = 0;  // total variance from which the mean is blended in
