@@ -12,16 +12,16 @@ namespace {
 // The figures behind these choices stand in docs/probe_sampling.md.
 
 /// Cosine between the axes and the normal.
-constexpr double axis_cosine = 0.8;
+constexpr double axis_cosine = 0.85;
 /// Beyond its near part a chord is searched with this probability.
 constexpr double far_probability = 0.1;
 /// The near part reaches as far as this share of the radii, plus a multiple of the radius drawn.
 constexpr double near_quantile = 0.9;
 constexpr double near_radii = 2;
-/// Of the draws, these go to the area strategy on a large and, in addition, on a small object.
-constexpr double area_share = 0.01, area_share_small = 0.1;
+/// Of the draws, these go to the area strategy.
+constexpr double area_share = 0.005;
 /// Of the radii, this part follows the brightest albedo anywhere instead of the typical one around the exit.
-constexpr double brightest_share = 0.25;
+constexpr double brightest_share = 0.05;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -95,8 +95,6 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
       c.reach[a] = table.cdf(c.level, c.sigma_t * (exit.axes[a].centre + radius_));
     exit.near_limit = std::max(exit.near_limit, table.sample(c.level, near_quantile) / c.sigma_t);
   }
-  const double spread = 2 * pi * exit.near_limit * exit.near_limit;
-  exit.area_probability = area_share + area_share_small * std::min(1.0, spread / area_.area());
   return exit;
 }
 
@@ -186,7 +184,7 @@ double ProbeSampler::density(const Exit& exit, const Vec3& position, const Vec3&
     sum += (near ? 1 : far_probability) * std::abs(glm::dot(normal, axis.direction)) *
            radius_density(exit, a, radius) / (radius * 2 * half_angle(axis, radius));
   }
-  return exit.area_probability / area_.area() + (1 - exit.area_probability) * sum / 3;
+  return area_share / area_.area() + (1 - area_share) * sum / 3;
 }
 
 double ProbeSampler::density(const Exit& exit, const SurfacePoint& entry) const {
@@ -208,7 +206,7 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
         {triangle, barycentric, expected, radius_density(exit, 0, distance) / (distance * expected)});
   };
   Vec2 choice = u.choice;
-  if (decide(choice.x, exit.area_probability)) {
+  if (decide(choice.x, area_share)) {
     const auto [triangle, barycentric] = area_.sample(u.disk);
     add(triangle, barycentric);
   } else if (const std::optional<Probe> probe = choose(exit, choice, u.disk)) {

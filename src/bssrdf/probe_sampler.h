@@ -71,8 +71,7 @@ class ProbeSampler {
     std::array<Axis, 3> axes;
     std::array<Component, 6> components;
     int component_count = 0;
-    double near_limit = 0;        // m: beyond it along the chord, only some probes look
-    double area_probability = 0;  // of the area strategy
+    double near_limit = 0;  // m: beyond it along the chord, only some probes look
   };
   /// Nothing where no light can leave, because the albedo is 0.
   std::optional<Exit> prepare(const BssrdfPoint& exit) const;
