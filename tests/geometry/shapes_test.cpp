@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "geometry/rectangle_packer.h"
+#include "geometry/still_life.h"
 
 using namespace alabaster;
 
@@ -57,7 +58,9 @@ Vec3 corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t k) {
 }  // namespace
 
 TEST_CASE("closed shapes have every edge once in each direction") {
-  for (const NamedShape& shape : closed_shapes(48)) {
+  auto shapes = closed_shapes(48);
+  shapes.push_back({"lotus bowl", make_lotus_bowl(72, 60), 0, 0});
+  for (const NamedShape& shape : shapes) {
     INFO(shape.name);
     std::map<std::pair<uint32_t, uint32_t>, int> directed;
     for (const Index3& t : shape.mesh.corners)
@@ -206,6 +209,31 @@ TEST_CASE("shapes have the size they are asked for") {
   CHECK(plane.positions.front() == Vec3(-1, 1, 0));
   CHECK(plane.uv_sets[0].front() == Vec2f(0, 0));
   CHECK(plane.geometric_normal(0) == Vec3(0, 0, 1));
+}
+
+TEST_CASE(
+    "the lotus bowl is thin at the rim and thick at the base, with normals that agree with its facets") {
+  const TriangleMesh bowl = make_lotus_bowl();
+  CHECK(enclosed_volume(bowl) > 0);
+  const BoundingBox box = bounding_box(bowl);
+  CHECK(box.low.y >= 0);
+  CHECK(box.low.y < 0.001);
+  CHECK(box.high.y > 0.1);
+  double mean_thickness = 2 * enclosed_volume(bowl) / surface_area(bowl);
+  CHECK(mean_thickness > 0.003);
+  CHECK(mean_thickness < 0.01);
+  for (uint32_t t = 0; t < bowl.triangle_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      REQUIRE(glm::dot(Vec3(bowl.normals[bowl.attributes[t][k]]), bowl.geometric_normal(t)) > 0.7);
+}
+
+TEST_CASE("a transformed mesh keeps its normals perpendicular") {
+  const Mat3 linear(1, 0.2, 0, 0, 0.5, 0, 0.3, 0, 2);
+  const TriangleMesh mesh = transformed(make_sphere(1, 64), linear, {1, 2, 3});
+  CHECK(enclosed_volume(mesh) == Approx(enclosed_volume(make_sphere(1, 64)) * glm::determinant(linear)));
+  for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      REQUIRE(glm::dot(Vec3(mesh.normals[mesh.attributes[t][k]]), mesh.geometric_normal(t)) > 0.95);
 }
 
 TEST_CASE("packed rectangles keep their gutters and do not overlap") {
