@@ -1,0 +1,145 @@
+#include "study/demo_recipe.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "geometry/shapes.h"
+#include "geometry/still_life.h"
+#include "study/scene_sets.h"
+#include "texture/solid_texture.h"
+
+namespace alabaster {
+
+namespace {
+
+RecipePart bowl() {
+  RecipePart part;
+  part.name = "alabaster";
+  part.mesh = make_lotus_bowl();
+  StoneParameters stone;
+  stone.body = {0.93, 0.89, 0.81};
+  stone.cloud = {0.86, 0.76, 0.62};
+  stone.vein = {0.42, 0.20, 0.09};
+  stone.scale = 0.055;
+  stone.vein_width = 0.05;
+  stone.seed = 4;
+  part.texture =
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 1024, 640, solid_stone(stone), stone.body));
+  part.medium = Medium{{0.0022, 0.0017, 0.0013}, 0.3, 1.5};
+  part.roughness = 0.22;
+  return part;
+}
+
+RecipePart pebble() {
+  RecipePart part;
+  part.name = "jade";
+  const Mat3 flattened(1, 0, 0, 0, 0.62, 0, 0, 0, 0.8);
+  part.mesh = transformed(make_blob(0.03, 0.10, 96), flattened, {0.128, 0.0, 0.075});
+  const double floor = bounding_box(part.mesh).low.y;
+  for (Vec3& p : part.mesh.positions) p.y -= floor;
+  StoneParameters stone;
+  stone.body = {0.20, 0.52, 0.27};
+  stone.cloud = {0.42, 0.68, 0.44};
+  stone.vein = {0.75, 0.82, 0.66};
+  stone.scale = 0.03;
+  stone.vein_width = 0.06;
+  stone.vein_strength = 0.7;
+  stone.seed = 9;
+  part.texture =
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 512, 512, solid_stone(stone), stone.body));
+  part.medium = Medium{{0.0016, 0.0026, 0.0018}, 0.3, 1.5};
+  part.roughness = 0.12;
+  return part;
+}
+
+RecipePart backdrop() {
+  RecipePart part;
+  part.name = "backdrop";
+  part.mesh = transformed(make_backdrop(3.0, 1.6, 1.2, 0.35), Mat3(1), {0, 0, 0.2});
+  part.colour = Rgb(0.14, 0.15, 0.18);
+  part.roughness = 0.6;
+  return part;
+}
+
+RecipePart lamp() {
+  RecipePart part;
+  part.name = "lamp";
+  part.mesh = transformed(make_sphere(0.014, 24), Mat3(1), {0, 0.062, 0});
+  part.colour = Rgb(0);
+  part.roughness = 1;
+  part.emission = Rgb(30, 17, 7.5);
+  return part;
+}
+
+SceneRecipe make_shape_recipe(const std::string& name) {
+  constexpr double size = 0.05;
+  SceneRecipe recipe;
+  recipe.id = name;
+  RecipePart part;
+  part.name = "stone";
+  part.mesh = name == "plane" ? make_plane(2 * size, 16) : make_cavity(0.6 * size, size, 96);
+  StoneParameters stone;
+  stone.scale = 0.4 * size;
+  stone.body = {0.85, 0.82, 0.76};
+  stone.cloud = {0.75, 0.66, 0.55};
+  stone.vein = {0.35, 0.20, 0.12};
+  part.texture =
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 512, 512, solid_stone(stone), stone.body));
+  part.medium = Medium{Rgb(0.02 * size), 0.3, 1.5};
+  recipe.parts.push_back(std::move(part));
+  recipe.camera.name = "study";
+  recipe.camera.position = name == "plane" ? Vec3(0.05, -0.1, 0.15) : Vec3(0.1, 0.1, 0.2);
+  recipe.camera.direction = glm::normalize(-recipe.camera.position);
+  recipe.title =
+      name == "plane" ? "A plane of veined stone" : "A ball-shaped cavity in a cube of veined stone";
+  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "256x256"}, {"spp", "64"}};
+  return recipe;
+}
+
+}  // namespace
+
+SceneRecipe make_demo_recipe() {
+  SceneRecipe recipe;
+  recipe.id = "demo";
+  recipe.title = "A lotus bowl of veined alabaster with a lamp in it";
+  recipe.parts.push_back(bowl());
+  recipe.parts.push_back(pebble());
+  recipe.parts.push_back(lamp());
+  recipe.parts.push_back(backdrop());
+  recipe.camera.name = "demo";
+  recipe.camera.position = {0.07, 0.19, 0.52};
+  recipe.camera.direction = glm::normalize(Vec3(0.02, 0.058, 0) - recipe.camera.position);
+  recipe.camera.vertical_fov = 30;
+  // From behind left, low: it shines through the petals' tips and the pebble's rim.
+  const Vec3 rim_light{-0.45, 0.38, -0.42};
+  recipe.lights.push_back(
+      DiskLight{rim_light, glm::normalize(Vec3(0.02, 0.05, 0) - rim_light), 0.09, Rgb(26, 30, 36)});
+  recipe.sky.ambient = Rgb(0.10, 0.12, 0.16);
+  recipe.sky.key = Rgb(0.55, 0.55, 0.6);
+  recipe.sky.exponent = 4;
+  recipe.sky.direction = {0.6, 0.7, 0.6};
+  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "960x640"}, {"spp", "64"}};
+  return recipe;
+}
+
+const std::vector<std::string>& recipe_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result{"demo", "plane", "cavity"};
+    const auto meshes = expand_scene_ids({"mesh"});
+    result.insert(result.end(), meshes.begin(), meshes.end());
+    return result;
+  }();
+  return names;
+}
+
+SceneRecipe make_recipe(const std::string& name) {
+  if (name == "demo") return make_demo_recipe();
+  if (name == "plane" || name == "cavity") return make_shape_recipe(name);
+  const auto& names = recipe_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return make_mesh_study_recipe(name);
+  std::string known;
+  for (const std::string& each : names) known += ", " + each;
+  throw InputError("'" + name + "': no procedural scene has that name; known are all" + known);
+}
+
+}  // namespace alabaster
