@@ -10,6 +10,7 @@ namespace alabaster {
 // callback that does the work. Errors a user can cause leave as InputError.
 void add_all_commands(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_bake_command(CLI::App& app);
 
 /// What the process ends with when nothing was thrown; a command sets it when part of its work failed.
 int exit_code();

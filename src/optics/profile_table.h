@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <vector>
+#include "core/rgb.h"
 
 namespace alabaster {
 
-/// The homogeneous basis R(rho; alpha) of DESIGN section 1 for one (g, eta): of the light that crossed into a
+/// The homogeneous basis R(rho; alpha) of docs/optics.md for one (g, eta): of the light that crossed into a
 /// half-space at a point and scattered at least once, the density per unit optical area that leaves at
 /// optical distance rho. All distances are optical (unitless); scene units are made by the caller: S(d) =
 /// sigma_t^2 R(sigma_t d). Immutable and thread-safe. Albedos are clamped to [0, 1].
@@ -26,6 +23,16 @@ class ProfileTable {
   /// R(rho; alpha) / alpha, finite as alpha -> 0 (single scattering alone). rho > 0; diverges as 1/rho.
   virtual double evaluate_over_albedo(double albedo, double rho) const = 0;
   double evaluate(double albedo, double rho) const { return albedo * evaluate_over_albedo(albedo, rho); }
+
+  /// The same for three channels in one call: at one distance (grey extinction), or at one distance each.
+  virtual Rgb evaluate_over_albedo(const Rgb& albedo, double rho) const {
+    return {evaluate_over_albedo(albedo.r, rho), evaluate_over_albedo(albedo.g, rho),
+            evaluate_over_albedo(albedo.b, rho)};
+  }
+  virtual Rgb evaluate_over_albedo(const Rgb& albedo, const Rgb& rho) const {
+    return {evaluate_over_albedo(albedo.r, rho.r), evaluate_over_albedo(albedo.g, rho.g),
+            evaluate_over_albedo(albedo.b, rho.b)};
+  }
 
   /// Draws rho with density pdf(albedo, rho) per unit rho (not per area), u in [0, 1).
   virtual double sample(double albedo, double u) const = 0;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "optics/half_space_walk.h"
+#include "optics/table_data.h"
+
+namespace alabaster {
+
+struct BakeOptions {
+  WalkMedium medium;
+  uint64_t photons = 16'000'000;
+  uint64_t seed = 1;
+};
+
+/// Photons of the named qualities of `alabaster bake`.
+inline constexpr uint64_t quick_photons = 16'000'000, full_photons = 400'000'000;
+
+/// Simulates and tabulates. `progress` gets the fraction done.
+TableData bake_table(const BakeOptions& options, const std::function<void(double)>& progress = {});
+
+/// The table of a finished simulation.
+TableData tabulate(const PathTally& tally, const BakeOptions& options);
+
+}  // namespace alabaster

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "optics/order_groups.h"
+#include "optics/radial_bins.h"
+
+namespace alabaster {
+
+/// A value with its standard error.
+struct Estimate {
+  double value = 0;
+  double standard_error = 0;
+};
+
+/// The orders at which some photons are stopped on purpose. Paths get long (the mean number of collisions up
+/// to order N grows as sqrt(N)), so only a part of the photons is followed beyond each stage: 63 collisions
+/// for all, and for half as many each time the limit grows fourfold, to 2^20 - 1. Which photons go on is
+/// fixed before they start, whatever their paths.
+struct WalkStages {
+  static constexpr int count = 8;
+  static constexpr int64_t limit(int stage) { return (int64_t{64} << (2 * stage)) - 1; }
+  /// How many of `total` photons are stopped at the limit of that stage.
+  static constexpr uint64_t photons(int stage, uint64_t total) {
+    const uint64_t going_on = stage == count - 1 ? 0 : total >> (stage + 1);
+    return (total >> stage) - going_on;
+  }
+};
+
+/// Exits of the half-space walk by order and by distance or cosine, in integers, so that tallies of parts add
+/// up to the same whole in any order.
+///
+/// Photons stopped at a stage are "censored" in the language of survival analysis: the estimator is that of
+/// Kaplan & Meier 1958: the chance to leave in a stage is that among the photons which began it, and the
+/// chance to begin it the product over the stages before.
+class PathTally {
+ public:
+  static constexpr int cosine_bins = 32;  // of the outside direction against the normal, equal in cosine
+
+  PathTally();
+
+  /// A photon that left after `order` >= 1 collisions at the squared distance, outside cosine in [0, 1].
+  void add_exit(int64_t order, double rho_squared, double cosine_outside) {
+    const auto group = static_cast<std::size_t>(OrderGroups::index(order));
+    ++exits_[group * RadialBins::count + static_cast<std::size_t>(RadialBins::index_of_square(rho_squared))];
+    const auto bin = static_cast<std::size_t>(cosine_outside * cosine_bins);
+    ++directions_[group * cosine_bins + (bin < cosine_bins ? bin : cosine_bins - 1)];
+  }
+  /// A photon still inside after the last collision its stage allows.
+  void add_stopped(int stage) { ++stopped_[static_cast<std::size_t>(stage)]; }
+  void add_collisions(uint64_t count) { collisions_ += count; }
+  void merge(const PathTally& other);
+
+  uint64_t photons() const;
+  uint64_t collisions() const { return collisions_; }
+  uint64_t stopped(int stage) const { return stopped_[static_cast<std::size_t>(stage)]; }
+  uint64_t exits(int group, int bin) const {
+    return exits_[static_cast<std::size_t>(group) * RadialBins::count + static_cast<std::size_t>(bin)];
+  }
+  uint64_t exits_by_cosine(int group, int bin) const {
+    return directions_[static_cast<std::size_t>(group) * cosine_bins + static_cast<std::size_t>(bin)];
+  }
+  uint64_t exits_of_stage(int stage) const;
+
+  /// Energy that left, per unit that entered, divided by the albedo: A(alpha)/alpha.
+  Estimate reflectance_over_albedo(double albedo) const;
+  /// Fraction still inside after 2^20 - 1 collisions: what alpha = 1 is short of 1.
+  double truncated() const;
+
+ private:
+  std::vector<uint64_t> exits_;       // [group][radial bin]
+  std::vector<uint64_t> directions_;  // [group][cosine bin]
+  std::vector<uint64_t> stopped_ = std::vector<uint64_t>(WalkStages::count);
+  uint64_t collisions_ = 0;
+};
+
+/// Stage in which an exit of that order group falls.
+int stage_of_group(int group);
+
+/// The tally read at one albedo: energy per radial bin, per unit that entered, divided by the albedo.
+std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo);
+
+/// Outgoing light by outside cosine at one albedo, as its density over the assumed T(cos) cos 2 / c's.
+std::vector<Estimate> exit_lobe_ratio(const PathTally& tally, double albedo, double eta);
+
+}  // namespace alabaster

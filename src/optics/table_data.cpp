@@ -1,0 +1,151 @@
+#include "optics/table_data.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "optics/radial_bins.h"
+
+namespace alabaster {
+
+static_assert(std::endian::native == std::endian::little, "tables are written as they lie in memory");
+
+namespace {
+
+constexpr char magic[8] = {'A', 'L', 'A', 'B', 'P', 'R', 'O', 'F'};
+
+uint64_t fnv1a(std::span<const char> bytes) {
+  uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+  return hash;
+}
+
+class Writer {
+ public:
+  void raw(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  void field(double value) { raw(&value, sizeof value); }
+  void field(uint64_t value) { raw(&value, sizeof value); }
+  void field(uint32_t value) { raw(&value, sizeof value); }
+  void field(const std::string& text) {
+    field(uint64_t{text.size()});
+    raw(text.data(), text.size());
+  }
+  template <typename T>
+  void field(const std::vector<T>& values) {
+    field(uint64_t{values.size()});
+    raw(values.data(), values.size() * sizeof(T));
+  }
+  std::string& bytes() { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+class Reader {
+ public:
+  Reader(std::span<const char> bytes, const std::string& name) : rest_(bytes), name_(name) {}
+
+  void raw(void* data, std::size_t size) {
+    if (size > rest_.size()) throw InputError(name_, "the profile table is truncated; bake it again");
+    if (size > 0) std::memcpy(data, rest_.data(), size);
+    rest_ = rest_.subspan(size);
+  }
+  void field(double& value) { raw(&value, sizeof value); }
+  void field(uint64_t& value) { raw(&value, sizeof value); }
+  void field(uint32_t& value) { raw(&value, sizeof value); }
+  void field(std::string& text) {
+    text.resize(length(1));
+    raw(text.data(), text.size());
+  }
+  template <typename T>
+  void field(std::vector<T>& values) {
+    values.resize(length(sizeof(T)));
+    raw(values.data(), values.size() * sizeof(T));
+  }
+  std::size_t left() const { return rest_.size(); }
+
+ private:
+  std::size_t length(std::size_t element) {
+    uint64_t count = 0;
+    field(count);
+    if (count > rest_.size() / element)
+      throw InputError(name_, "the profile table is truncated; bake it again");
+    return count;
+  }
+
+  std::span<const char> rest_;
+  const std::string& name_;
+};
+
+template <typename Archive, typename Table>
+void transfer(Archive& archive, Table& table) {
+  archive.field(table.g);
+  archive.field(table.eta);
+  archive.field(table.photons);
+  archive.field(table.collisions);
+  archive.field(table.seed);
+  archive.field(table.truncated);
+  archive.field(table.provenance);
+  archive.field(table.reflectance_over_albedo);
+  archive.field(table.reflectance_standard_error);
+  archive.field(table.log2_density);
+}
+
+}  // namespace
+
+double AlbedoRows::position(double albedo) {
+  return (count - 1) / octaves * std::log2(1 + std::sqrt(1 - albedo) / knee);
+}
+
+double AlbedoRows::albedo(double position) {
+  const double root = knee * (std::exp2(octaves / (count - 1) * position) - 1);
+  return position >= count - 1 ? 0.0 : 1 - root * root;
+}
+
+std::string encode_table(const TableData& table) {
+  Writer writer;
+  writer.raw(magic, sizeof magic);
+  writer.field(TableData::version);
+  transfer(writer, table);
+  writer.field(fnv1a(writer.bytes()));
+  return std::move(writer.bytes());
+}
+
+TableData decode_table(std::span<const char> bytes, const std::string& name) {
+  Reader reader(bytes, name);
+  char found[sizeof magic];
+  uint32_t version = 0;
+  if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+    throw InputError(name, "not a profile table of Alabaster");
+  reader.raw(found, sizeof found);
+  reader.field(version);
+  if (version != TableData::version)
+    throw InputError(name, "profile table of version " + std::to_string(version) +
+                               ", this program reads version " + std::to_string(TableData::version) +
+                               "; bake it again");
+  TableData table;
+  transfer(reader, table);
+  uint64_t checksum = 0;
+  reader.field(checksum);
+  if (reader.left() != 0 || checksum != fnv1a(bytes.first(bytes.size() - sizeof checksum)))
+    throw InputError(name, "the profile table was altered (its checksum does not match); bake it again");
+  const std::size_t rows = AlbedoRows::count;
+  if (table.reflectance_over_albedo.size() != rows || table.reflectance_standard_error.size() != rows ||
+      table.log2_density.size() != rows * RadialBins::inner)
+    throw InputError(name, "the profile table has the wrong number of rows; bake it again");
+  return table;
+}
+
+void write_table(const std::filesystem::path& path, const TableData& table) {
+  write_text_atomically(path, encode_table(table));
+}
+
+TableData read_table(const std::filesystem::path& path) {
+  const std::string bytes = read_text(path);
+  return decode_table(bytes, path.string());
+}
+
+}  // namespace alabaster
