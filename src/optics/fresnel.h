@@ -9,8 +9,9 @@ namespace alabaster {
 /// side the light comes from; `eta` = index behind the surface / index of the side it comes from. 1 on total
 /// reflection.
 inline double fresnel_dielectric(double cos_incident, double eta) {
+  if (eta == 1) return 0;
   const double sin2_transmitted = (1 - cos_incident * cos_incident) / (eta * eta);
-  if (sin2_transmitted >= 1) return eta == 1 && cos_incident > 0 ? 0.0 : 1.0;
+  if (sin2_transmitted >= 1) return 1;
   const double cos_transmitted = std::sqrt(1 - sin2_transmitted);
   const double parallel = (eta * cos_incident - cos_transmitted) / (eta * cos_incident + cos_transmitted);
   const double perpendicular =

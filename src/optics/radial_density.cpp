@@ -36,6 +36,9 @@ double power_law_integral(double slope, double step) {
 // both sides.
 double mean_over_centre(double slope_below, double slope_above) {
   const double half = 0.5 * log_step;
+  const double steepest = -1000;  // e^20 within a bin: far below anything measured
+  slope_below = std::max(slope_below, steepest);
+  slope_above = std::max(slope_above, steepest);
   const double below = -power_law_integral(slope_below, -half), above = power_law_integral(slope_above, half);
   return (below + above) / (2 * std::sinh(half));
 }
@@ -52,11 +55,12 @@ std::vector<double> smooth_log_density(const std::vector<Estimate>& energy, doub
     const Estimate& e = energy[static_cast<std::size_t>(bin)];
     const double rho = RadialBins::centre(bin);
     // Photons that would give this relative error; few of them make a biased logarithm, so they fade out.
-    const double significance = e.standard_error > 0 ? e.value / e.standard_error : 0;
+    const bool measured_at_all = e.value > 1e-250 && e.standard_error > 0;
+    const double significance = measured_at_all ? e.value / e.standard_error : 0;
     const double photons = significance * significance;
     const double fade = photons * photons / (photons * photons + 400);
     tilt[j] = decay * rho;
-    measured[j] = e.value > 0 ? std::log(e.value / RadialBins::width(bin)) + tilt[j] : 0;
+    measured[j] = measured_at_all ? std::log(e.value / RadialBins::width(bin)) + tilt[j] : 0;
     weight[j] = photons * fade / (1 + std::pow(rho / trusted_radius, 8));
   }
   // The second difference of log f is of the order of step^2.

@@ -97,12 +97,22 @@ void transfer(Archive& archive, Table& table) {
 }  // namespace
 
 double AlbedoRows::position(double albedo) {
-  return (count - 1) / octaves * std::log2(1 + std::sqrt(1 - albedo) / knee);
+  const double root = std::sqrt(1 - albedo);
+  return (count - 1) / length * (std::log2(1 + root / knee) + linear * root);
 }
 
 double AlbedoRows::albedo(double position) {
-  const double root = knee * (std::exp2(octaves / (count - 1) * position) - 1);
-  return position >= count - 1 ? 0.0 : 1 - root * root;
+  const double target = std::clamp(position / (count - 1), 0.0, 1.0) * length;
+  if (target == length) return 0;
+  // s is concave in r, so Newton's steps from r = 0 rise to the solution and stop there.
+  double root = 0;
+  for (int step = 0; step < 100; ++step) {
+    const double error = target - std::log2(1 + root / knee) - linear * root;
+    const double next = std::min(1.0, root + error / (1.4426950408889634 / (knee + root) + linear));
+    if (!(next > root)) break;
+    root = next;
+  }
+  return 1 - root * root;
 }
 
 std::string encode_table(const TableData& table) {

@@ -8,13 +8,15 @@
 
 namespace alabaster {
 
-/// The albedos of a table's rows: equidistant in s = log2(1 + sqrt(1 - alpha) / knee), from alpha = 1 (row 0)
-/// to alpha = 0 (the last). Near alpha = 1 that is sqrt(1 - alpha), in which A is nearly linear; further away
-/// the diffusion length changes by the same factor from row to row.
+/// The albedos of a table's rows, equidistant in s = log2(1 + r / knee) + 8 r with r = sqrt(1 - alpha), from
+/// alpha = 1 (row 0) to alpha = 0 (the last). Close to alpha = 1 that is proportional to r, in which A is
+/// nearly linear; further away the diffusion length changes by the same factor from row to row; the linear
+/// term keeps the rows dense towards alpha = 0.
 struct AlbedoRows {
-  static constexpr int count = 65;
+  static constexpr int count = 129;
   static constexpr double knee = 1.0 / 256;
-  static constexpr double octaves = 8.005624549193878;  // log2(1 + 1 / knee)
+  static constexpr double linear = 8;
+  static constexpr double length = 8.005624549193878 + linear;  // s at alpha = 0; log2(257) + 8
 
   /// Position among the rows, 0 to count - 1. `albedo` in [0, 1].
   static double position(double albedo);
@@ -23,7 +25,7 @@ struct AlbedoRows {
 
 /// What a baked table holds, and how it is written. Optical units.
 struct TableData {
-  static constexpr uint32_t version = 1;
+  static constexpr uint32_t version = 2;
 
   double g = 0, eta = 1;
   uint64_t photons = 0, collisions = 0, seed = 0;

@@ -14,6 +14,9 @@ namespace {
 constexpr int rows = AlbedoRows::count;
 constexpr int nodes = RadialBins::inner;
 constexpr int spline_rows = rows + 2;
+// The sampled density needs fewer rows.
+constexpr int sampled_stride = 4, sampled_rows = (rows - 1) / sampled_stride + 1;
+static_assert((rows - 1) % sampled_stride == 0);
 constexpr double first_log2 = RadialBins::first_octave + 0.5 / RadialBins::per_octave;
 constexpr double defensive_share = 1e-3;
 
@@ -21,7 +24,7 @@ double node_radius(int node) {
   return RadialBins::centre(node + 1);
 }
 std::size_t sampled_index(int node, int row) {
-  return static_cast<std::size_t>(node) * rows + static_cast<std::size_t>(row);
+  return static_cast<std::size_t>(node) * sampled_rows + static_cast<std::size_t>(row);
 }
 
 }  // namespace
@@ -41,8 +44,8 @@ TabulatedProfile::TabulatedProfile(const TableData& data)
       eta_(data.eta),
       reflectance_over_albedo_(data.reflectance_over_albedo),
       log2_density_(static_cast<std::size_t>(nodes) * spline_rows),
-      sampled_density_(static_cast<std::size_t>(nodes) * rows),
-      sampled_cdf_(static_cast<std::size_t>(nodes) * rows) {
+      sampled_density_(static_cast<std::size_t>(nodes) * sampled_rows),
+      sampled_cdf_(static_cast<std::size_t>(nodes) * sampled_rows) {
   for (int j = 0; j < nodes; ++j) {
     float* row = &log2_density_[static_cast<std::size_t>(j) * spline_rows];
     for (int i = 0; i < rows; ++i)
@@ -50,13 +53,13 @@ TabulatedProfile::TabulatedProfile(const TableData& data)
     row[0] = 2 * row[1] - row[2];
     row[spline_rows - 1] = 2 * row[spline_rows - 2] - row[spline_rows - 3];
   }
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < sampled_rows; ++i) {
+    const float* log2_row = &data.log2_density[static_cast<std::size_t>(i * sampled_stride * nodes)];
     std::vector<double> density(nodes);
     double total = 0;
     for (int j = 0; j < nodes; ++j) {
       const double rho = node_radius(j);
-      density[static_cast<std::size_t>(j)] = std::exp2(
-          double{data.log2_density[static_cast<std::size_t>(i) * nodes + static_cast<std::size_t>(j)]});
+      density[static_cast<std::size_t>(j)] = std::exp2(double{log2_row[j]});
       total += density[static_cast<std::size_t>(j)] * rho * 0.6931471805599453 / RadialBins::per_octave;
     }
     for (int j = 0; j < nodes; ++j) {
@@ -89,9 +92,11 @@ TabulatedProfile::Node TabulatedProfile::node(double rho) const {
 
 TabulatedProfile::Row TabulatedProfile::row(double albedo) const {
   constexpr auto inverse_knee = static_cast<float>(1 / AlbedoRows::knee);
-  constexpr auto scale = static_cast<float>((rows - 1) / AlbedoRows::octaves);
+  constexpr auto scale = static_cast<float>((rows - 1) / AlbedoRows::length);
   const auto remainder = static_cast<float>(1 - std::clamp(albedo, 0.0, 1.0));
-  const float position = scale * fast_log2(1 + std::sqrt(remainder) * inverse_knee);
+  const float root = std::sqrt(remainder);
+  const float position =
+      scale * (fast_log2(1 + root * inverse_knee) + static_cast<float>(AlbedoRows::linear) * root);
   const int index = std::min(static_cast<int>(position), rows - 2);
   return {index, std::min(1.0, double{position} - index)};
 }
@@ -124,7 +129,7 @@ float TabulatedProfile::log2_density(const Row& row, const Node& node) const {
 }
 
 double TabulatedProfile::evaluate_over_albedo(double albedo, double rho) const {
-  return double{fast_exp2(log2_density(row(albedo), node(rho)))} / (2 * pi * rho);
+  return 1 / (2 * pi * rho) * double{fast_exp2(log2_density(row(albedo), node(rho)))};
 }
 
 Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, double rho) const {
@@ -142,13 +147,20 @@ Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, const Rgb& rho) co
           evaluate_over_albedo(albedo.b, rho.b)};
 }
 
+TabulatedProfile::Row TabulatedProfile::sampled_row(double albedo) const {
+  const Row fine = row(albedo);
+  const double position = (fine.index + fine.fraction) / sampled_stride;
+  const int index = std::min(static_cast<int>(position), sampled_rows - 2);
+  return {index, position - index};
+}
+
 double TabulatedProfile::blended(const std::vector<double>& table, const Row& row, int node) const {
   const double* at = &table[sampled_index(node, row.index)];
   return at[0] + row.fraction * (at[1] - at[0]);
 }
 
 double TabulatedProfile::pdf(double albedo, double rho) const {
-  const Row place = row(albedo);
+  const Row place = sampled_row(albedo);
   const double last = node_radius(nodes - 1);
   if (rho <= node_radius(0)) return blended(sampled_density_, place, 0);
   if (rho >= last) return blended(sampled_density_, place, nodes - 1) * (last / rho) * (last / rho);
@@ -159,7 +171,7 @@ double TabulatedProfile::pdf(double albedo, double rho) const {
 }
 
 double TabulatedProfile::cdf(double albedo, double rho) const {
-  const Row place = row(albedo);
+  const Row place = sampled_row(albedo);
   const double last = node_radius(nodes - 1);
   if (rho <= node_radius(0)) return blended(sampled_density_, place, 0) * rho;
   if (rho >= last) return 1 - blended(sampled_density_, place, nodes - 1) * last * last / rho;
@@ -171,7 +183,7 @@ double TabulatedProfile::cdf(double albedo, double rho) const {
 }
 
 double TabulatedProfile::sample(double albedo, double u) const {
-  const Row place = row(albedo);
+  const Row place = sampled_row(albedo);
   if (u < blended(sampled_cdf_, place, 0)) return u / blended(sampled_density_, place, 0);
   const double last = node_radius(nodes - 1);
   if (u >= blended(sampled_cdf_, place, nodes - 1))

@@ -37,6 +37,7 @@ class TabulatedProfile final : public ProfileTable {
 
   Node node(double rho) const;
   Row row(double albedo) const;
+  Row sampled_row(double albedo) const;
   float log2_density(const Row& row, const Node& node) const;
   double blended(const std::vector<double>& table, const Row& row, int node) const;
 

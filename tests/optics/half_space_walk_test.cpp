@@ -38,9 +38,9 @@ TEST_CASE("order groups tile the orders") {
 }
 
 TEST_CASE("the vectorised walk agrees with the scalar walk (z-test, significance 1e-4 over all albedos)") {
-  for (const double g : {0.3, -0.5, 0.9})
+  for (const double g : {-0.5, 0.8})
     for (const double eta : {1.5, 1.0}) {
-      HalfSpaceWalkOptions options{{g, eta}, 2 * photons_per_chunk, 3};
+      HalfSpaceWalkOptions options{{g, eta}, photons_per_chunk, 3};
       const PathTally lanes = half_space_tally(options);
       options.seed = 4;
       const PathTally scalar = half_space_tally_scalar(options);
@@ -50,7 +50,7 @@ TEST_CASE("the vectorised walk agrees with the scalar walk (z-test, significance
         INFO("g " << g << " eta " << eta << " albedo " << albedo);
         const double z =
             z_value(lanes.reflectance_over_albedo(albedo), scalar.reflectance_over_albedo(albedo));
-        CHECK(two_sided_normal_p_value(z) > sidak(1e-4, 36));
+        CHECK(two_sided_normal_p_value(z) > sidak(1e-4, 24));
       }
     }
 }
