@@ -59,7 +59,10 @@ void GltfMeshBuilder::grow_optional_arrays(const GltfPrimitive& primitive, std::
   std::size_t sets = primitive.uv_sets.size();
   if (sets > 0) sets = std::max(sets, primary + 1);  // the swap may reach past the last set
   while (mesh_.uv_sets.size() < sets) mesh_.uv_sets.emplace_back(count, Vec2f(0));
-  if (!primitive.colours.empty() && mesh_.colours.empty()) mesh_.colours.assign(count, Vec4f(1));
+  if (!primitive.colours.empty() && !has_colours_) {
+    has_colours_ = true;
+    mesh_.colours.assign(count, Vec4f(1));
+  }
 }
 
 uint32_t GltfMeshBuilder::add_attribute(const Source& source, uint32_t vertex, const Vec3& normal) {
@@ -77,7 +80,7 @@ uint32_t GltfMeshBuilder::add_attribute(const Source& source, uint32_t vertex, c
     }
     mesh_.uv_sets[set].push_back(uv);
   }
-  if (!mesh_.colours.empty())
+  if (has_colours_)
     mesh_.colours.push_back(primitive.colours.empty() ? Vec4f(1) : primitive.colours[vertex]);
   Vec4f tangent(0);
   if (!primitive.tangents.empty()) {

@@ -44,7 +44,7 @@ class GltfMeshBuilder {
 
   TriangleMesh mesh_;
   std::unordered_map<std::array<uint64_t, 3>, uint32_t, PositionHash> position_index_;
-  bool all_have_tangents_ = true;
+  bool all_have_tangents_ = true, has_colours_ = false;
   Counts counts_;
 };
 
