@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bssrdf/bssrdf.h"
+#include "image/image.h"
+#include "integrators/planar.h"
+
+namespace alabaster {
+
+/// A model with everything that decides its image of a flat scene, as charts and results.json name it:
+/// MODEL[:VARIANT...], the variants composite:symmetric, composite:order1; aggregate:WIDTH and
+/// aggregate:WIDTH:mcSAMPLES (the ellipse's width, Monte Carlo as in the paper instead of pyramid lookups);
+/// and :uniform, :profile, :mis for other than the default sampling.
+struct PlanarMethod {
+  std::string name;   // as given
+  std::string model;  // for make_bssrdf()
+  BssrdfOptions options;
+  PlanarSampling sampling = PlanarSampling::clipped;
+};
+
+/// Throws InputError for a name that is none.
+PlanarMethod parse_planar_method(const std::string& name);
+
+/// An image with what it cost.
+struct TimedImage {
+  Image image;  // R G B A, variance.R/.G/.B, samples.Y at least
+  double seconds = 0, cpu_seconds = 0;
+  uint64_t samples = 0;  // of all pixels; paths for the reference
+};
+
+/// The method's image at `spp` Sobol samples per pixel.
+TimedImage render_planar(const PlanarScene& scene, const PlanarMethod& method, const ProfileTable& profile,
+                         uint32_t spp, uint64_t seed);
+
+/// The volumetric reference until its noise() is at most `noise`, from the light where it can be.
+TimedImage render_planar_reference(const PlanarScene& scene, double noise, uint64_t max_paths, uint64_t seed);
+
+}  // namespace alabaster
