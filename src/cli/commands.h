@@ -9,6 +9,7 @@ namespace alabaster {
 // One function per subcommand, each in a file of its own: it adds the subcommand with its options, and the
 // callback that does the work. Errors a user can cause leave as InputError.
 void add_all_commands(CLI::App& app);
+void add_generate_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <type_traits>
@@ -13,11 +15,31 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Six digits: what people type, and finer than any of these numbers matters.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.6g}", value));
+}
 Json to_json(const Vec3& v) {
-  return Json::array({v.x, v.y, v.z});
+  return Json::array({rounded(v.x), rounded(v.y), rounded(v.z)});
 }
 Json to_json(const Rgb& c) {
-  return c.is_grey() ? Json(c.r) : Json::array({c.r, c.g, c.b});
+  return c.is_grey() ? Json(rounded(c.r)) : Json::array({rounded(c.r), rounded(c.g), rounded(c.b)});
+}
+
+/// Indented JSON with arrays of numbers on one line each.
+std::string to_text(const Json& json) {
+  const std::string indented = json.dump(2);
+  std::string text;
+  bool in_array = false;
+  for (std::size_t k = 0; k < indented.size(); ++k) {
+    const char c = indented[k];
+    if (c == '[') in_array = indented.find_first_of("{\"", k) > indented.find(']', k);
+    if (c == ']') in_array = false;
+    const bool layout = c == '\n' || c == ' ';
+    if (!in_array || !layout) text += c;
+    if (in_array && c == ',') text += ' ';
+  }
+  return text + "\n";
 }
 
 Rgb to_reflectance(const Rgb& albedo) {
@@ -77,12 +99,12 @@ Json light_json(const Light& light) {
           return {{"type", "disk"},
                   {"position", to_json(l.position)},
                   {"direction", to_json(l.direction)},
-                  {"radius", l.radius},
+                  {"radius", rounded(l.radius)},
                   {"radiance", to_json(l.radiance)}};
         else if constexpr (std::is_same_v<T, PatchLight>)
           return {{"type", "patch"},
                   {"position", to_json(l.position)},
-                  {"radius", l.radius},
+                  {"radius", rounded(l.radius)},
                   {"radiance", to_json(l.radiance)}};
         else
           return nullptr;  // triangle lights follow from emission
@@ -137,7 +159,7 @@ void write_scene_files(const SceneRecipe& recipe, const std::filesystem::path& f
     scene.materials.push_back(export_material(part));
   }
   write_glb(folder / (recipe.id + ".glb"), scene);
-  write_text_atomically(folder / (recipe.id + ".json"), scene_json(recipe).dump(2) + "\n");
+  write_text_atomically(folder / (recipe.id + ".json"), to_text(scene_json(recipe)));
 }
 
 }  // namespace alabaster
