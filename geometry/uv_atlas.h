@@ -23,6 +23,8 @@ class UvAtlas {
   /// The 2 x 3 map from a displacement in metres (in the triangle's plane) to a displacement in UV; zero for
   /// triangles without area in space.
   Vec2 uv_from_surface(uint32_t triangle, const Vec3& displacement) const;
+  /// The rows of that map: the gradients of u and v along the surface, 1/m.
+  const std::array<Vec3f, 2>& gradients(uint32_t triangle) const { return gradients_[triangle]; }
   /// UV units per metre: sqrt of the area ratio. 0 where the triangle has no area in UV.
   double uv_per_metre(uint32_t triangle) const { return uv_per_metre_[triangle]; }
 

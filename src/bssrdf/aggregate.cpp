@@ -13,6 +13,8 @@
 namespace alabaster {
 namespace {
 
+constexpr int max_samples = 64;
+
 /// The uniform ellipse is nearly a Gaussian across (standard deviation half the semi-axis) times a semicircle
 /// law along the line between the foci, for which Gauss-Chebyshev quadrature of the second kind is exact.
 std::vector<KernelTap> ellipse_taps(double minor) {
@@ -48,8 +50,7 @@ AggregateBssrdf::AggregateBssrdf(const BssrdfMedium& medium, const KernelPlaceme
       samples_(samples),
       taps_(ellipse_taps(minor_)) {
   if (!(width >= 0)) throw InputError("aggregate: the ellipse's width must be 0 or more");
-  if (samples < 0 || samples > static_cast<int>(max_kernel_taps))
-    throw InputError("aggregate: the ellipse takes 0 to 64 samples");
+  if (samples < 0 || samples > max_samples) throw InputError("aggregate: the ellipse takes 0 to 64 samples");
 }
 
 Rgb AggregateBssrdf::ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& exit, double distance) const {
@@ -57,7 +58,7 @@ Rgb AggregateBssrdf::ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& e
     return aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, distance, taps_);
   Rng shift(pair_hash(entry.surface, exit.surface));
   const double shift_x = shift.uniform(), shift_y = shift.uniform();
-  std::array<KernelTap, max_kernel_taps> taps;
+  std::array<KernelTap, max_samples> taps;
   for (int k = 0; k < samples_; ++k) {
     // Additive recurrence with the plastic number (Roberts 2018), shifted by Cranley-Patterson rotation.
     const double radius = std::sqrt(fraction(shift_x + 0.7548776662466927 * k));

@@ -1,17 +1,20 @@
 #include "bssrdf/aggregation_kernel.h"
 
-#include <cassert>
+#include <algorithm>
 
 namespace alabaster {
 
 Rgb aggregate_albedo(const AlbedoField& albedo, const KernelPlacement& placement, const SurfacePoint& entry,
                      const SurfacePoint& exit, double distance, std::span<const KernelTap> taps) {
-  assert(taps.size() <= max_kernel_taps);
-  std::array<KernelFootprint, max_kernel_taps> storage;
-  const std::span<KernelFootprint> footprints(storage.data(), taps.size());
-  placement.place(entry, exit, distance, taps, footprints);
+  constexpr std::size_t run = 6;
+  std::array<KernelFootprint, run> storage;
   Rgb sum;
-  for (std::size_t k = 0; k < taps.size(); ++k) sum += taps[k].weight * albedo.filtered(footprints[k]);
+  for (std::size_t first = 0; first < taps.size(); first += run) {
+    const auto part = taps.subspan(first, std::min(run, taps.size() - first));
+    const std::span<KernelFootprint> footprints(storage.data(), part.size());
+    placement.place(entry, exit, distance, part, footprints);
+    for (std::size_t k = 0; k < part.size(); ++k) sum += part[k].weight * albedo.filtered(footprints[k]);
+  }
   return sum;
 }
 

@@ -26,9 +26,6 @@ inline constexpr std::array<KernelTap, 6> symmetric_ek17_kernel{{
     {6.0 / 7, 0, 1.0 / 7, 0.5 / 7},
 }};
 
-/// At most this many taps are placed in one go.
-inline constexpr std::size_t max_kernel_taps = 64;
-
 /// The albedo averaged by a kernel placed between two points: one lookup per tap. `distance` > 0, m.
 Rgb aggregate_albedo(const AlbedoField& albedo, const KernelPlacement& placement, const SurfacePoint& entry,
                      const SurfacePoint& exit, double distance, std::span<const KernelTap> taps);

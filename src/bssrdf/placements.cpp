@@ -20,9 +20,13 @@ bool needs_sideways(std::span<const KernelTap> taps) {
   return std::any_of(taps.begin(), taps.end(), [](const KernelTap& tap) { return tap.across != 0; });
 }
 
-Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle, const Vec3& normal) {
-  const Frame frame(normal);
-  return {atlas.uv_from_surface(triangle, frame.tangent), atlas.uv_from_surface(triangle, frame.bitangent)};
+/// The same map in the frame of the tangent plane whose first axis is the gradient of u: lower triangular.
+Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle) {
+  const auto& [u, v] = atlas.gradients(triangle);
+  const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
+  if (!(uu > 0)) return {0, 0, 0, std::sqrt(vv)};
+  const double along = std::sqrt(uu);
+  return {along, uv / along, 0, std::sqrt(std::max(vv - uv * uv / uu, 0.0))};
 }
 
 }  // namespace
@@ -67,9 +71,8 @@ void ProjectedChordPlacement::place(const SurfacePoint& entry, const SurfacePoin
                                     std::span<const KernelTap> taps,
                                     std::span<KernelFootprint> footprints) const {
   if (!interpolates(entry, exit)) return place_by_queries(entry, exit, distance, taps, footprints);
-  const Mat2 at_entry = jacobian(atlas_, entry.triangle, entry.geometric_normal);
-  const Mat2 at_exit =
-      exit.triangle == entry.triangle ? at_entry : jacobian(atlas_, exit.triangle, exit.geometric_normal);
+  const Mat2 at_entry = jacobian(atlas_, entry.triangle);
+  const Mat2 at_exit = exit.triangle == entry.triangle ? at_entry : jacobian(atlas_, exit.triangle);
   const Vec3 side = needs_sideways(taps) ? sideways(entry, exit) : Vec3(0);
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const bool nearer_exit = taps[k].along > 0.5;
@@ -93,11 +96,12 @@ void ProjectedChordPlacement::place_by_queries(const SurfacePoint& entry, const 
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const KernelTap& tap = taps[k];
     const Vec3 wanted = entry.position + tap.along * chord + tap.across * distance * side;
-    // Both ends lie on the surface, so it is no farther than the nearer of them; float coordinates need a
-    // margin.
+    // Both ends lie on the surface, so it is no farther than the nearer of them, and mostly much closer;
+    // float coordinates need a margin.
     const SurfacePoint& end = tap.along > 0.5 ? exit : entry;
-    const double radius = 1.001 * glm::distance(wanted, end.position) + 1e-5 * glm::length(wanted);
-    const auto closest = rays_.closest_point(object_, wanted, radius);
+    const double margin = 1e-5 * glm::length(wanted), bound = glm::distance(wanted, end.position);
+    auto closest = rays_.closest_point(object_, wanted, 0.2 * bound + margin);
+    if (!closest) closest = rays_.closest_point(object_, wanted, 1.001 * bound + margin);
     const uint32_t triangle = closest ? closest->triangle : end.triangle;
     const Vec2 barycentric = closest ? closest->barycentric : end.barycentric;
     footprints[k] = around(mesh_.surface_point(triangle, barycentric), tap.sigma * distance);
@@ -105,8 +109,7 @@ void ProjectedChordPlacement::place_by_queries(const SurfacePoint& entry, const 
 }
 
 KernelFootprint ProjectedChordPlacement::around(const SurfacePoint& point, double sigma) const {
-  const Mat2 uv_from_surface =
-      atlas_.empty() ? Mat2(0.0) : jacobian(atlas_, point.triangle, point.geometric_normal);
+  const Mat2 uv_from_surface = atlas_.empty() ? Mat2(0.0) : jacobian(atlas_, point.triangle);
   return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface};
 }
 

@@ -71,6 +71,11 @@ ProbeSampler::ProbeSampler(const Bssrdf& model, ProbeTarget target)
   centre_ = bounding_box(*target_.mesh).centre();
   for (const Vec3& p : target_.mesh->positions) radius_ = std::max(radius_, glm::distance(p, centre_));
   radius_ *= 1.0001;
+  const Rgb brightest = model.medium().albedo->max();
+  for (int c = 0; c < 3; ++c)
+    brightest_level_[static_cast<std::size_t>(c)] = DistanceTable::level(brightest[c]);
+  for (int level = 0; level < DistanceTable::level_count; ++level)
+    near_distance_[static_cast<std::size_t>(level)] = model.distances().sample(level, near_quantile);
 }
 
 bool ProbeSampler::in_medium(uint32_t triangle) const {
@@ -91,36 +96,39 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   add_components(exit, typical);
   for (int k = 0; k < exit.component_count; ++k) {
     Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t a = 0; a < 3; ++a) {
       c.reach[a] = table.cdf(c.level, c.sigma_t * (exit.axes[a].centre + radius_));
-    exit.near_limit = std::max(exit.near_limit, table.sample(c.level, near_quantile) / c.sigma_t);
+      c.density_scale[a] = c.probability * c.sigma_t / c.reach[a];
+    }
   }
   return exit;
 }
 
 void ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
-  const auto add = [&](double albedo, double sigma_t, double share) {
-    const int level = DistanceTable::level(albedo);
+  const Rgb& sigma_t = model_.medium().sigma_t;
+  const auto add = [&](int level, double sigma, double share) {
     for (int k = 0; k < exit.component_count; ++k) {
       Exit::Component& other = exit.components[static_cast<std::size_t>(k)];
-      if (other.level == level && other.sigma_t == sigma_t) {
+      if (other.level == level && other.sigma_t == sigma) {
         other.probability += share;
         return;
       }
     }
     Exit::Component& fresh = exit.components[static_cast<std::size_t>(exit.component_count++)];
     fresh.level = level;
-    fresh.sigma_t = sigma_t;
+    fresh.sigma_t = sigma;
     fresh.probability = share;
   };
-  const Rgb brightest = model_.medium().albedo->max();
+  const auto add_channel = [&](int c, double share) {
+    const int level = DistanceTable::level(typical[c]);
+    add(level, sigma_t[c], (1 - brightest_share) * share);
+    add(std::min(level, brightest_level_[static_cast<std::size_t>(c)]), sigma_t[c], brightest_share * share);
+    exit.near_limit = std::max(exit.near_limit, near_distance_[static_cast<std::size_t>(level)] / sigma_t[c]);
+  };
+  if (typical.is_grey() && sigma_t.is_grey()) return add_channel(0, 1);
   const double sum = typical.r + typical.g + typical.b;
-  for (int c = 0; c < 3; ++c) {
-    if (!(typical[c] > 0)) continue;
-    const double share = typical[c] / sum, sigma_t = model_.medium().sigma_t[c];
-    add(typical[c], sigma_t, (1 - brightest_share) * share);
-    add(std::max(typical[c], brightest[c]), sigma_t, brightest_share * share);
-  }
+  for (int c = 0; c < 3; ++c)
+    if (typical[c] > 0) add_channel(c, typical[c] / sum);
 }
 
 /// Density per metre of the radius around an axis.
@@ -128,7 +136,7 @@ double ProbeSampler::radius_density(const Exit& exit, std::size_t axis, double r
   double sum = 0;
   for (int k = 0; k < exit.component_count; ++k) {
     const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    sum += c.probability * c.sigma_t / c.reach[axis] * model_.distances().pdf(c.level, c.sigma_t * radius);
+    sum += c.density_scale[axis] * model_.distances().pdf(c.level, c.sigma_t * radius);
   }
   return sum;
 }

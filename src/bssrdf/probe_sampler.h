@@ -59,8 +59,9 @@ class ProbeSampler {
       int level = 0;       // of the distance table
       double sigma_t = 0;  // 1/m
       double probability = 0;
-      std::array<double, 3> reach{1, 1,
-                                  1};  // per axis: the share of the distribution within the axis's limit
+      // Per axis: the share of the distribution within the axis's limit, and what its density is multiplied
+      // by.
+      std::array<double, 3> reach{}, density_scale{};
     };
     /// A probe direction with its disk, seen from which the object's bounding sphere is a circle.
     struct Axis {
@@ -110,6 +111,8 @@ class ProbeSampler {
   AreaSampler area_;
   Vec3 centre_{0};  // of a sphere around the object
   double radius_ = 0;
+  std::array<int, 3> brightest_level_{};                            // per channel
+  std::array<double, DistanceTable::level_count> near_distance_{};  // optical
 };
 
 }  // namespace alabaster
