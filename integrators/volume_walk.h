@@ -1,0 +1,78 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/rgb.h"
+#include "core/rng.h"
+#include "geometry/mesh.h"
+#include "geometry/ray_scene.h"
+#include "scene/medium.h"
+#include "texture/albedo_field.h"
+
+namespace alabaster {
+
+/// Where the albedo of a collision comes from.
+enum class WalkAlbedo {
+  closest_point,  // the texture's at the closest point of the medium's boundary: the reference
+  exit            // the exit point's, everywhere: what production random walks do
+};
+
+struct VolumeWalkOptions {
+  WalkAlbedo albedo = WalkAlbedo::closest_point;
+  /// Paths are cut after this many collisions; what is lost is counted. A guard against endless loops at
+  /// albedo 1, not a parameter of quality.
+  int64_t max_order = 10'000'000;
+};
+
+/// The end of a walk that left the medium.
+struct VolumeWalkExit {
+  SurfacePoint point;  // where it left; normals outwards
+  Vec3 direction{0};   // unit, outside, refracted
+  Rgb weight;          // of the path
+  int64_t order = 0;   // collisions
+};
+
+/// Random walks through the medium of one closed object with a smooth dielectric boundary (DESIGN section 1,
+/// "Volumetric meaning of a 2.5D texture"). Walks run backwards, from just below a surface point to where
+/// light came in; by reciprocity of the boundary and of the phase function that is the same as forwards.
+/// Thread-safe.
+class VolumeWalk {
+ public:
+  /// `boundary` has one flag per material index: whether the medium lies below its triangles; where it is 0
+  /// light is absorbed. Everything passed by reference outlives the walk.
+  VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t object, std::vector<uint8_t> boundary,
+             const Medium& medium, const AlbedoField& albedo, const VolumeWalkOptions& options);
+
+  /// Walks from `start` on the boundary in `direction` (unit, inside). Nothing where the path was absorbed or
+  /// ended by Russian roulette. An exit of order 0 is light that never scattered.
+  std::optional<VolumeWalkExit> walk(const SurfacePoint& start, const Vec3& direction, Rng& rng) const;
+
+  struct Counts {
+    std::atomic<int64_t> collisions{0}, queries{0}, rays{0}, walks{0};
+    std::atomic<int64_t> lost{0};  // slipped through a crack between triangles, or longer than max_order
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct State;
+  bool advance(State& state, Rng& rng) const;
+  bool collide(State& state, Rng& rng) const;
+  bool meet_boundary(State& state, const Hit& hit, Rng& rng) const;
+
+  const RayScene& rays_;
+  const TriangleMesh& mesh_;
+  uint32_t object_;
+  std::vector<uint8_t> boundary_;
+  Medium medium_;
+  Rgb sigma_t_;
+  bool grey_;
+  double slack_;  // m: what single precision may be off by
+  const AlbedoField& albedo_;
+  VolumeWalkOptions options_;
+  mutable Counts counts_;
+};
+
+}  // namespace alabaster
