@@ -49,12 +49,12 @@ int wrap_index(int i, int size, Wrap wrap) {
 }
 
 Texture::Texture(std::shared_ptr<const TexelArray> texels, TextureMapping mapping)
-    : texels_(std::move(texels)), mapping_(mapping) {
+    : texels_(std::move(texels)), mapping_(mapping), st_from_uv_(mapping.linear_part()) {
   assert(texels_ && texels_->width > 0 && texels_->height > 0);
 }
 
 Vec4 Texture::evaluate(Vec2 uv) const {
-  const Vec2 st = mapping_.transform(uv) * Vec2(texels_->width, texels_->height);
+  const Vec2 st = (mapping_.offset + st_from_uv_ * uv) * Vec2(texels_->width, texels_->height);
   if (mapping_.filter == Filter::nearest)
     return texel(*texels_, mapping_, floor_to_int(st.x), floor_to_int(st.y));
   const int x = floor_to_int(st.x - 0.5), y = floor_to_int(st.y - 0.5);

@@ -55,6 +55,7 @@ class Texture {
  private:
   std::shared_ptr<const TexelArray> texels_;
   TextureMapping mapping_;
+  Mat2 st_from_uv_;  // linear part of the mapping's transform
 };
 
 }  // namespace alabaster
