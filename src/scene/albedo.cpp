@@ -1,8 +1,250 @@
 #include "scene/albedo.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <span>
+
+#include "optics/profile_table.h"
+#include "texture/material_map.h"
+
 namespace alabaster {
 
-// Fields over the surface come with texture/material_map.
-void build_albedo_fields(Scene&) {}
+namespace {
+
+/// Multi-scatter colours obey the same limit as reflectances; albedos are taken as they are.
+double largest_value(const AlbedoSource& source) {
+  return source.meaning == AlbedoSource::Meaning::albedo ? 1 : max_reflectance;
+}
+
+ReflectanceToAlbedo inversion(const Material& material) {
+  switch (material.albedo.meaning) {
+    case AlbedoSource::Meaning::albedo:
+      return [](double value, int) { return value; };
+    case AlbedoSource::Meaning::multiscatter:
+      return [g = material.medium->g](double value, int) { return albedo_from_multiscatter(value, g); };
+    case AlbedoSource::Meaning::reflectance:
+      break;
+  }
+  const ProfileTable* profile = &baseline_profile();
+  return [profile](double value, int) { return profile->albedo_from_reflectance(value); };
+}
+
+Rgb convert(const Rgb& value, const ReflectanceToAlbedo& to_albedo, double largest) {
+  Rgb albedo;
+  for (int c = 0; c < 3; ++c)
+    albedo[c] = std::clamp(to_albedo(value[c] > 0 ? std::min(value[c], largest) : 0, c), 0.0, 1.0);
+  return albedo;
+}
+
+/// COLOR_0 without a texture to hold it: interpolated between corners. Gaussians read the colour at their
+/// mean.
+class VertexColourAlbedo : public AlbedoField {
+ public:
+  VertexColourAlbedo(const TriangleMesh& mesh, const Rgb& factor, const ReflectanceToAlbedo& to_albedo,
+                     double largest)
+      : mesh_(mesh), max_(0) {
+    for (const Vec4f& colour : mesh.colours) {
+      albedo_.push_back(convert(factor * Rgb(colour.r, colour.g, colour.b), to_albedo, largest));
+      for (int c = 0; c < 3; ++c) max_[c] = std::max(max_[c], albedo_.back()[c]);
+    }
+  }
+  Rgb at(const SurfacePoint& point) const override { return at(point.triangle, point.barycentric); }
+  Rgb filtered(const KernelFootprint& footprint) const override {
+    return at(footprint.triangle, footprint.barycentric);
+  }
+  Rgb max() const override { return max_; }
+
+ private:
+  Rgb at(uint32_t triangle, Vec2 b) const {
+    const Index3& corner = mesh_.attributes[triangle];
+    return (1 - b.x - b.y) * albedo_[corner[0]] + b.x * albedo_[corner[1]] + b.y * albedo_[corner[2]];
+  }
+  const TriangleMesh& mesh_;
+  std::vector<Rgb> albedo_;  // per attribute
+  Rgb max_;
+};
+
+/// The multi-scatter colour times the strength texture's alpha, where both share their texels.
+TexelArray scaled_by_strength(const Texture& colour, const Texture& strength, bool& exact) {
+  TexelArray result = colour.texels();
+  const TexelArray& alpha = strength.texels();
+  exact = alpha.width == result.width && alpha.height == result.height &&
+          colour.mapping().uv_set == strength.mapping().uv_set;
+  double mean = 0;
+  for (const Vec4f& t : alpha.texels) mean += t.a / static_cast<double>(alpha.texels.size());
+  for (std::size_t i = 0; i < result.texels.size(); ++i)
+    result.texels[i] *= Vec4f(Vec3f(exact ? alpha.texels[i].a : static_cast<float>(mean)), 1);
+  return result;
+}
+
+class AlbedoBuilder {
+ public:
+  explicit AlbedoBuilder(Scene& scene) : scene_(scene), statistics_(scene.materials.size()) {}
+
+  void run() {
+    for (SceneObject& object : scene_.objects) object.albedo = build(object);
+    finish();
+  }
+
+ private:
+  struct Statistics {
+    double weight = 0;  // texels, or 1 for a constant
+    Rgb sum;
+    double clamped = 0;
+  };
+
+  std::unique_ptr<AlbedoField> build(const SceneObject& object) {
+    std::map<uint16_t, std::vector<uint32_t>> triangles;
+    for (uint32_t t = 0; t < object.mesh.triangle_count(); ++t)
+      triangles[object.mesh.materials[t]].push_back(t);
+    std::vector<std::unique_ptr<AlbedoField>> fields(scene_.materials.size());
+    std::size_t count = 0;
+    for (const auto& [material, list] : triangles) {
+      if (!scene_.materials[material].medium) continue;
+      fields[material] = build(object, material, list);
+      ++count;
+    }
+    if (count == 0) return nullptr;
+    if (triangles.size() == 1) return std::move(fields[triangles.begin()->first]);
+    return std::make_unique<ObjectAlbedo>(object.mesh, std::move(fields));
+  }
+
+  std::unique_ptr<AlbedoField> build(const SceneObject& object, uint16_t index,
+                                     const std::vector<uint32_t>& triangles) {
+    const Material& material = scene_.materials[index];
+    const AlbedoSource& source = material.albedo;
+    const TriangleMesh& mesh = object.mesh;
+    const Rgb factor = source.factor * source.strength;
+    const bool coloured = source.vertex_colours && has_colours(mesh, triangles);
+    if (!mesh.uv_sets.empty() && (source.texture || (coloured && holds_a_picture(object))))
+      return build_textured(object, index, triangles, coloured);
+    const Rgb plain = factor * value_without_uvs(source);
+    if (!coloured) {
+      const Rgb albedo = convert(plain, inversion(material), largest_value(source));
+      count(index, albedo, 1, plain.max() > largest_value(source) ? 1 : 0);
+      return std::make_unique<ConstantAlbedo>(albedo);
+    }
+    auto field =
+        std::make_unique<VertexColourAlbedo>(mesh, plain, inversion(material), largest_value(source));
+    for (const uint32_t t : triangles) {
+      SurfacePoint middle;
+      middle.triangle = t;
+      middle.barycentric = Vec2(1.0 / 3);
+      count(index, field->at(middle), mesh.area(t), 0);
+    }
+    return field;
+  }
+
+  std::unique_ptr<AlbedoField> build_textured(const SceneObject& object, uint16_t index,
+                                              const std::vector<uint32_t>& triangles, bool coloured) {
+    const Material& material = scene_.materials[index];
+    const AlbedoSource& source = material.albedo;
+    constexpr int baked_side = 1024;
+    const TextureMapping mapping = source.texture ? source.texture->mapping() : TextureMapping{};
+    const UvAtlas& atlas = object.atlas;
+    TexelArray own;  // only when texels differ from the file's
+    const TexelArray* texels = source.texture ? &source.texture->texels() : &own;
+    if (!source.texture) {
+      own = {baked_side, baked_side, std::vector<Vec4f>(std::size_t{baked_side} * baked_side, Vec4f(1))};
+    } else if (source.strength_texture) {
+      bool exact = false;
+      own = scaled_by_strength(*source.texture, *source.strength_texture, exact);
+      texels = &own;
+      if (!exact)
+        warn(material, "its scatter strength texture differs in size from its colour; its mean is used");
+    }
+    if (coloured) {
+      if (texels != &own) own = *texels;
+      texels = &own;
+      const double disputed = bake_vertex_colours(object.mesh, triangles, mapping, own);
+      if (disputed > 0.01)
+        warn(material,
+             fmt::format("vertex colours disagree on {:.0f} % of the texels that triangles share; their "
+                         "mean is used",
+                         100 * disputed));
+    }
+    const Coverage coverage =
+        texel_coverage(object.mesh, atlas, triangles, mapping, texels->width, texels->height);
+    const AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
+                                              inversion(material), largest_value(source));
+    count_texels(index, albedo, coverage.weights);
+    return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);
+  }
+
+  static bool has_colours(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {
+    if (mesh.colours.empty()) return false;
+    return std::any_of(triangles.begin(), triangles.end(), [&](uint32_t t) {
+      const Index3& a = mesh.attributes[t];
+      return std::any_of(a.begin(), a.end(), [&](uint32_t i) { return Vec3f(mesh.colours[i]) != Vec3f(1); });
+    });
+  }
+
+  /// Whether the UVs could hold a picture of the surface: every place its own texel.
+  static bool holds_a_picture(const SceneObject& object) {
+    const UvAtlas& atlas = object.atlas;
+    return atlas.overlap_fraction < 0.01 && atlas.zero_area_triangles == 0 && atlas.out_of_range_corners == 0;
+  }
+
+  static Rgb value_without_uvs(const AlbedoSource& source) {
+    Rgb value(1);
+    if (source.texture) {
+      const Vec4 t = source.texture->evaluate(Vec2(0));
+      value = Rgb(t.r, t.g, t.b);
+    }
+    if (source.strength_texture) value *= source.strength_texture->evaluate(Vec2(0)).a;
+    return value;
+  }
+
+  void count(uint16_t index, const Rgb& albedo, double weight, double clamped) {
+    Statistics& s = statistics_[index];
+    s.sum += albedo * weight;
+    s.weight += weight;
+    s.clamped += clamped;
+  }
+
+  void count_texels(uint16_t index, const AlbedoTexels& albedo, const std::vector<float>& weights) {
+    Rgb sum;
+    double covered = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] > 0)) continue;
+      const Vec4f& t = albedo.texels.texels[i];
+      sum += Rgb(t.r, t.g, t.b);
+      covered += 1;
+    }
+    Statistics& s = statistics_[index];
+    s.sum += sum;
+    s.weight += covered;
+    s.clamped += static_cast<double>(albedo.clamped);
+  }
+
+  void finish() {
+    for (std::size_t i = 0; i < statistics_.size(); ++i) {
+      const Statistics& s = statistics_[i];
+      Material& material = scene_.materials[i];
+      if (s.weight > 0) material.mean_albedo = s.sum / s.weight;
+      if (s.clamped > 0)
+        warn(material, fmt::format("{:.2g} % of it asks for a reflectance above {}, which is clamped",
+                                   100 * s.clamped / s.weight, max_reflectance));
+    }
+  }
+
+  void warn(const Material& material, const std::string& text) {
+    scene_.warnings.push_back("material '" + material.name + "': " + text);
+  }
+
+  Scene& scene_;
+  std::vector<Statistics> statistics_;
+};
+
+}  // namespace
+
+void build_albedo_fields(Scene& scene) {
+  AlbedoBuilder(scene).run();
+}
 
 }  // namespace alabaster
