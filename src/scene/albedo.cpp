@@ -82,6 +82,11 @@ TexelArray scaled_by_strength(const Texture& colour, const Texture& strength, bo
   return result;
 }
 
+std::string share_text(double share) {
+  if (share >= 1) return "all";
+  return share >= 0.1 ? fmt::format("{:.0f} %", 100 * share) : fmt::format("{:.2g} %", 100 * share);
+}
+
 class AlbedoBuilder {
  public:
   explicit AlbedoBuilder(Scene& scene) : scene_(scene), statistics_(scene.materials.size()) {}
@@ -228,8 +233,8 @@ class AlbedoBuilder {
       Material& material = scene_.materials[i];
       if (s.weight > 0) material.mean_albedo = s.sum / s.weight;
       if (s.clamped > 0)
-        warn(material, fmt::format("{:.2g} % of it asks for a reflectance above {}, which is clamped",
-                                   100 * s.clamped / s.weight, max_reflectance));
+        warn(material, fmt::format("asks for a reflectance above {} on {} of it, which is clamped",
+                                   max_reflectance, share_text(s.clamped / s.weight)));
     }
   }
 

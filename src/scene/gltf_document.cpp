@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,41 @@ void parse_model(GltfDocument& document, std::string_view bytes, bool binary, co
                                         one_line(error.empty() ? warning : error) + "; export it again");
 }
 
+/// "%20" and the like, as URIs write what file names hold.
+std::string decode_uri(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool escape = uri[i] == '%' && i + 2 < uri.size() &&
+                        std::isxdigit(static_cast<unsigned char>(uri[i + 1])) &&
+                        std::isxdigit(static_cast<unsigned char>(uri[i + 2]));
+    if (!escape) {
+      out += uri[i];
+      continue;
+    }
+    out += static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16));
+    i += 2;
+  }
+  return out;
+}
+
+void require_buffer_files(const GltfDocument& document, const nlohmann::json& root,
+                          const std::filesystem::path& folder) {
+  const auto buffers = root.find("buffers");
+  if (buffers == root.end()) return;
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    const auto uri = (*buffers)[i].find("uri");
+    if (uri == (*buffers)[i].end()) continue;
+    const std::string place = gltf_place("buffers", i, "");
+    if (!uri->is_string())
+      throw InputError(document.file, place + ".uri", "must be a string; export the file again");
+    const auto text = uri->get<std::string>();
+    if (text.rfind("data:", 0) == 0) continue;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(folder / decode_uri(text), ignored))
+      throw InputError(document.file, place, "'" + text + "' cannot be found; put it beside the model");
+  }
+}
+
 }  // namespace
 
 GltfDocument read_gltf(const std::filesystem::path& path) {
@@ -102,6 +138,7 @@ GltfDocument read_gltf(const std::filesystem::path& path) {
   const std::string_view text = binary ? glb_json(document.file, bytes) : std::string_view(bytes);
   const nlohmann::json root = parse_json(document.file, text);
   validate_gltf(document.file, root, document.remarks);
+  require_buffer_files(document, root, path.parent_path());
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   parse_model(document, bytes, binary, folder);
   return document;

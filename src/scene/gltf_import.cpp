@@ -162,12 +162,11 @@ class Importer {
     SceneObject object;
     object.name = name;
     object.mesh = std::move(builder).finish(tangent_uv_set);
-    remark_on(name, counts, left_over, morphed, skinned);
-    if (object.mesh.triangle_count() == 0) {
+    if (object.mesh.triangle_count() == 0)
       warn(fmt::format("object '{}' has no triangles and is left out", name));
-      return;
-    }
-    scene_.objects.push_back(std::move(object));
+    else
+      scene_.objects.push_back(std::move(object));
+    remark_on(name, counts, left_over, morphed, skinned);
   }
 
   void remark_on(const std::string& name, const GltfMeshBuilder::Counts& counts, std::size_t left_over,

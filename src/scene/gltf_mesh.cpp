@@ -80,8 +80,7 @@ uint32_t GltfMeshBuilder::add_attribute(const Source& source, uint32_t vertex, c
     }
     mesh_.uv_sets[set].push_back(uv);
   }
-  if (has_colours_)
-    mesh_.colours.push_back(primitive.colours.empty() ? Vec4f(1) : primitive.colours[vertex]);
+  if (has_colours_) mesh_.colours.push_back(primitive.colours.empty() ? Vec4f(1) : primitive.colours[vertex]);
   Vec4f tangent(0);
   if (!primitive.tangents.empty()) {
     const Vec4& t = primitive.tangents[vertex];

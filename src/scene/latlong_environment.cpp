@@ -134,7 +134,8 @@ std::unique_ptr<Environment> load_latlong_environment(const std::filesystem::pat
     }
   }
   if (mended > 0)
-    warn(fmt::format("{}: texels that are negative or not finite count as 0 ({} of them)", file.string(), mended));
+    warn(fmt::format("{}: texels that are negative or not finite count as 0 ({} of them)", file.string(),
+                     mended));
   return make_latlong_environment(image.width(), image.height(), std::move(texels), rotation);
 }
 

@@ -22,6 +22,10 @@ namespace {
 
 void take_model(const fs::path& path, Scene& scene) {
   GltfScene model = import_gltf(path);
+  if (model.objects.empty()) {
+    const std::string why = model.warnings.empty() ? "" : " (" + model.warnings.back() + ")";
+    throw InputError(path.string(), "has no triangles to render" + why + "; check what was exported");
+  }
   scene.objects = std::move(model.objects);
   scene.materials = std::move(model.materials);
   scene.lights = std::move(model.lights);
