@@ -12,6 +12,12 @@ void add_all_commands(CLI::App& app) {
   add_generate_command(app);
   add_info_command(app);
   add_bake_command(app);
+  add_render_command(app);
+  add_batch_command(app);
+}
+
+std::string program_version() {
+  return ALABASTER_VERSION;
 }
 
 int exit_code() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -12,9 +14,15 @@ void add_all_commands(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
+void add_render_command(CLI::App& app);
+void add_batch_command(CLI::App& app);
+
+std::string program_version();
 
 /// What the process ends with when nothing was thrown; a command sets it when part of its work failed.
 int exit_code();
 void set_exit_code(int code);
+/// The work was stopped by Ctrl-C; what was done is written.
+inline constexpr int interrupted_exit_code = 130;
 
 }  // namespace alabaster
