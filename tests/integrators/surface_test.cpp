@@ -1,0 +1,121 @@
+#include "integrators/surface.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "integrators/scene_builder.h"
+#include "optics/fresnel.h"
+
+using namespace alabaster;
+using namespace alabaster::test;
+
+namespace {
+
+Vec3 view(double degrees) {
+  return {std::sin(degrees * pi / 180), 0, std::cos(degrees * pi / 180)};
+}
+
+// A plane so large, 40,000 mean free paths, that a part of 1e-4 of the light at most leaves beyond its edge.
+Scene plane_scene(const Material& material, double size = 40) {
+  Scene scene;
+  add(scene, make_plane(size), material);
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("grey furnace: an unbounded plane of medium shows F + T A") {
+  // DESIGN section 1: under uniform light of radiance 1 an unbounded plane shows F(cos) + T(cos) A(alpha).
+  for (const double albedo : {0.5, 0.9, 0.99, 1.0}) {
+    Scene scene = plane_scene(medium_material(Rgb(albedo), Rgb(0.001)));
+    scene.environment = make_constant_environment(Rgb(1));
+    prepare_scene(scene);
+    for (const double degrees : {0.0, 60.0}) {
+      SurfaceOptions options;
+      options.camera = parallel_camera(Vec3(0), view(degrees), 1, 0.01);
+      const double f = fresnel_dielectric(std::cos(degrees * pi / 180), 1.5);
+      const double expected = f + (1 - f) * baseline_profile().reflectance(albedo);
+      const Measured m = measure(scene, options, 60000);
+      INFO("albedo " << albedo << ", " << degrees << " degrees: " << m.mean << " +- " << m.error
+                     << ", expected " << expected);
+      CHECK(std::abs(m.mean - expected) < std::max(3 * m.error, 1e-4));
+      CHECK(3 * m.error < 0.005 * expected * 1.5);
+      CHECK(std::abs(m.mean - expected) < 0.005 * expected);
+    }
+  }
+}
+
+TEST_CASE("grey furnace: a smooth diffuse surface shows F + T x base colour, exactly") {
+  // The body's lobe T(cos_o) T(cos_i) / (pi c) integrates to T(cos_o): no energy is lost or made.
+  for (const double colour : {0.2, 1.0}) {
+    Scene scene = plane_scene(diffuse_material(Rgb(colour)));
+    scene.environment = make_constant_environment(Rgb(1));
+    prepare_scene(scene);
+    for (const double degrees : {0.0, 70.0}) {
+      SurfaceOptions options;
+      options.camera = parallel_camera(Vec3(0), view(degrees), 1, 0.01);
+      const double f = fresnel_dielectric(std::cos(degrees * pi / 180), 1.5);
+      const Measured m = measure(scene, options, 20000);
+      INFO("colour " << colour << ", " << degrees << " degrees: " << m.mean << " +- " << m.error);
+      CHECK(std::abs(m.mean - (f + (1 - f) * colour)) < 4 * m.error + 1e-9);
+      CHECK(m.error < 2e-3);
+    }
+  }
+}
+
+TEST_CASE("white furnace: a smooth metal of colour 1 is invisible") {
+  Scene scene = plane_scene(diffuse_material(Rgb(1), 0, 1));
+  scene.environment = make_constant_environment(Rgb(1));
+  prepare_scene(scene);
+  SurfaceOptions options;
+  options.camera = parallel_camera(Vec3(0), view(50), 1, 0.01);
+  const Measured m = measure(scene, options, 100);
+  CHECK(m.mean == Approx(1).margin(1e-9));
+}
+
+TEST_CASE("a rough metal under uniform light shows its directional albedo (quadrature)") {
+  for (const double roughness : {0.3, 0.7, 1.0}) {
+    Scene scene = plane_scene(diffuse_material(Rgb(1), roughness, 1));
+    scene.environment = make_constant_environment(Rgb(1));
+    prepare_scene(scene);
+    SurfaceOptions options;
+    const Vec3 wo = view(40);
+    options.camera = parallel_camera(Vec3(0), wo, 1, 0.01);
+    // The integral of D G2 / (4 cos_o) over the hemisphere by the midpoint rule.
+    const Ggx ggx{roughness * roughness};
+    double expected = 0;
+    const int n = 600;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const double z = (i + 0.5) / n, phi = 2 * pi * (j + 0.5) / n, s = std::sqrt(1 - z * z);
+        const Vec3 wi(s * std::cos(phi), s * std::sin(phi), z);
+        expected += ggx.distribution(glm::normalize(wo + wi)) * ggx.masking_shadowing(wo, wi) / (4 * wo.z) *
+                    2 * pi / (n * n);
+      }
+    const Measured m = measure(scene, options, 20000);
+    INFO("roughness " << roughness << ": " << m.mean << " +- " << m.error << ", expected " << expected);
+    CHECK(std::abs(m.mean - expected) < 4 * m.error + 1e-4);
+  }
+}
+
+TEST_CASE("without the interface's mirror and unscattered light, only the body is left") {
+  Scene scene = plane_scene(medium_material(Rgb(0.9), Rgb(0.001)));
+  scene.environment = make_constant_environment(Rgb(1));
+  prepare_scene(scene);
+  SurfaceOptions options;
+  options.camera = parallel_camera(Vec3(0), view(0), 1, 0.01);
+  options.specular = false;
+  const Measured m = measure(scene, options, 40000);
+  CHECK(std::abs(m.mean - 0.96 * baseline_profile().reflectance(0.9)) < 4 * m.error);
+}
+
+TEST_CASE("a patch light that covers the plane is the furnace") {
+  Scene scene = plane_scene(medium_material(Rgb(0.9), Rgb(0.001)));
+  scene.lights.push_back(PatchLight{Vec3(0), 1000, Rgb(1)});
+  prepare_scene(scene);
+  SurfaceOptions options;
+  options.camera = parallel_camera(Vec3(0), view(0), 1, 0.01);
+  const double f = fresnel_dielectric(1, 1.5);
+  const Measured m = measure(scene, options, 20000);
+  CHECK(std::abs(m.mean - (f + (1 - f) * baseline_profile().reflectance(0.9))) < 4 * m.error);
+}
