@@ -403,7 +403,10 @@ Ray SurfaceIntegrator::leaving(const SurfacePoint& point, const Vec3& direction)
 bool SurfaceIntegrator::lit(const SurfacePoint& point, const LightSample& light,
                             double opacity_number) const {
   Ray ray = leaving(point, light.direction);
-  ray.t_max = light.distance * (1 - 1e-6) - offset_;
+  if (std::isfinite(light.distance)) {
+    ray.direction = point.position + light.distance * light.direction - ray.origin;
+    ray.t_max = 1 - 1e-4;  // short of the light itself, whose triangles must not shadow it
+  }
   return !scene_.rays.occluded(ray, opacity_number);
 }
 
