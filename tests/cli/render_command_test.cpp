@@ -136,7 +136,7 @@ TEST_CASE("wrong options end with code 1, one line, and no file") {
       {"--subsurface", "no_such_material"},
   };
   for (const std::vector<std::string>& options : wrong) {
-    std::vector<std::string> arguments{"render", scene, "-o", out};
+    std::vector<std::string> arguments{"render", scene, "-o", out, "--quiet"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramRun run = run_program(arguments);
     INFO(options[0] << " " << options[1] << ": " << run.err);
@@ -156,7 +156,9 @@ TEST_CASE("files that are missing, not scenes or cannot be written end with one 
   const std::string key =
       write_text(folder / "key.json", R"({"version": 1, "model": "ball.glb", "wrong": 1})").string();
   const std::string option =
-      write_text(folder / "option.json", R"({"version": 1, "model": "ball.glb", "integrator": {"sppp": 1}})")
+      write_text(
+          folder / "option.json",
+          R"({"version": 1, "model": "ball.glb", "environment": {"radiance": 1}, "integrator": {"sppp": 1}})")
           .string();
   const std::vector<std::vector<std::string>> wrong{{(folder / "missing.glb").string(), "-o", out},
                                                     {folder.path().string(), "-o", out},
@@ -168,6 +170,7 @@ TEST_CASE("files that are missing, not scenes or cannot be written end with one 
                                                     {scene, "-o", folder.path().string()}};
   for (std::vector<std::string> arguments : wrong) {
     arguments.insert(arguments.begin(), "render");
+    arguments.push_back("--quiet");
     const ProgramRun run = run_program(arguments);
     INFO(arguments[1] << ": " << run.err);
     CHECK(run.exit_code == 1);
