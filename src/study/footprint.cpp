@@ -8,14 +8,18 @@
 
 namespace alabaster {
 
-double FootprintFit::density(double along, double across) const {
-  double sum = 0;
+double FootprintFit::log_density(double along, double across) const {
+  std::array<double, 3> logs;
   for (std::size_t k = 0; k < 3; ++k) {
     const double s2 = position[k] * position[k];
     const double d2 = (along - position[k]) * (along - position[k]) + across * across;
-    sum += weight[k] / (2 * pi * s2) * std::exp(-0.5 * d2 / s2);
+    logs[k] = std::log(weight[k] / (2 * pi * s2)) - 0.5 * d2 / s2;
   }
-  return sum;
+  // The largest is taken out: far away all three underflow.
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  double sum = 0;
+  for (const double l : logs) sum += std::exp(l - largest);
+  return largest + std::log(sum);
 }
 
 namespace {
@@ -124,8 +128,7 @@ void describe(Footprint& footprint, const std::vector<FootprintVertex>& vertices
     u += p.weight * p.along;
     uu += p.weight * p.along * p.along;
     vv += p.weight * p.across * p.across;
-    const double fitted = footprint.fit.density(p.along, p.across), eq1 = paper.density(p.along, p.across);
-    if (fitted > 0 && eq1 > 0) gain += p.weight * std::log(fitted / eq1);
+    gain += p.weight * (footprint.fit.log_density(p.along, p.across) - paper.log_density(p.along, p.across));
     const double column = (p.along + 1) / 3 * Footprint::columns, row = (p.across + 1) / 2 * Footprint::rows;
     if (!(column >= 0 && column < Footprint::columns && row >= 0 && row < Footprint::rows)) continue;
     inside += p.weight;

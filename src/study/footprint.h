@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct FootprintFit {
   std::array<double, 3> weight{4.0 / 7, 2.0 / 7, 1.0 / 7};
   std::array<double, 3> position{4.0 / 7, 2.0 / 7, 1.0 / 7};
   /// Per unit area of the pair's frame.
-  double density(double along, double across) const;
+  double density(double along, double across) const { return std::exp(log_density(along, across)); }
+  double log_density(double along, double across) const;
 };
 
 struct Footprint {

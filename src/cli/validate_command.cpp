@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/commands.h"
+#include "core/cancellation.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "study/validation.h"
+
+namespace alabaster {
+
+namespace {
+
+struct ValidateSettings {
+  ValidationOptions options;
+  std::string quality = "quick", output;
+  int threads = 0;
+};
+
+void run(ValidateSettings& settings) {
+  set_thread_count(settings.threads);
+  settings.options.quality = quality_from_name(settings.quality);
+  settings.options.output = settings.output;
+  const ValidationResult result = validate_planar(settings.options);
+  if (result.cancelled) {
+    say("stopped; what was finished is written");
+    set_exit_code(130);
+  }
+  say(settings.output + "/results.json written after " + format_duration(result.seconds));
+}
+
+}  // namespace
+
+void add_validate_command(CLI::App& app) {
+  auto settings = std::make_shared<ValidateSettings>();
+  CLI::App* command = app.add_subcommand(
+      "validate", "Measure every model on flat scenes against the volumetric reference and write a report");
+  command
+      ->add_option("--scenes", settings->options.scenes,
+                   "Scenes or sets, separated by commas: planar, stripes1, stripes1@45, stripes1@radiosity, "
+                   "MY.json ...")
+      ->delimiter(',');
+  command
+      ->add_option(
+          "--models", settings->options.models,
+          "Models, separated by commas: composite, composite:symmetric, aggregate:0.5, composite:uniform ...")
+      ->delimiter(',');
+  command->add_option("--quality", settings->quality, "quick (minutes) or full (an hour)")
+      ->capture_default_str();
+  command->add_option("-o,--output", settings->output, "Folder for the report")->required();
+  command->add_option("--seed", settings->options.seed, "Seed of all random numbers")->capture_default_str();
+  command->add_option("--threads", settings->threads, "Number of threads; 0: all cores")
+      ->capture_default_str();
+  command->callback([settings] { run(*settings); });
+}
+
+}  // namespace alabaster

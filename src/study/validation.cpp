@@ -1,0 +1,214 @@
+#include "study/validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cancellation.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "optics/fresnel.h"
+#include "study/planar_scene_file.h"
+#include "study/scene_sets.h"
+#include "study/validation_output.h"
+
+namespace alabaster {
+
+Quality quality_from_name(const std::string& name) {
+  if (name == "quick") return Quality::quick;
+  if (name == "full") return Quality::full;
+  throw InputError("quality '" + name + "' is not known; use quick or full");
+}
+
+ValidationBudget budget(Quality quality) {
+  ValidationBudget b;
+  if (quality == Quality::full) {
+    b.resolution = 200;
+    b.reference_noise = 0.004;
+    b.floor_noise = 0.006;
+    b.max_paths = 10'000'000'000;
+    b.spp = 1024;
+    b.sweep_spp = 256;
+    b.footprint_paths = 4'000'000;
+    b.map_paths = 40'000'000;
+  }
+  return b;
+}
+
+const std::vector<double>& aggregate_widths() {
+  static const std::vector<double> widths{0, 0.25, 0.5, 0.75, 1, 1.5, 2, 3};
+  return widths;
+}
+
+namespace {
+
+MethodResult measure(const PlanarScene& scene, const PlanarMethod& method, const ProfileTable& profile,
+                     const Image& reference, uint32_t spp, uint64_t seed) {
+  MethodResult result;
+  result.model = method.name;
+  result.render = render_planar(scene, method, profile, spp, seed);
+  result.errors = image_errors(result.render.image, reference);
+  return result;
+}
+
+}  // namespace
+
+SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMethod>& methods,
+                          const ProfileTable& profile, const ValidationBudget& budget, bool sweep,
+                          uint64_t seed) {
+  SceneResult result;
+  result.scene = scene;
+  result.reference = render_planar_reference(scene, budget.reference_noise, budget.max_paths, seed);
+  const Image& truth = result.reference.image;
+  for (const PlanarMethod& method : methods)
+    result.methods.push_back(measure(scene, method, profile, truth, budget.spp, seed + 1));
+  if (sweep)
+    for (const double width : aggregate_widths())
+      result.sweep.push_back(measure(scene, parse_planar_method(fmt::format("aggregate:{}", width)), profile,
+                                     truth, budget.sweep_spp, seed + 2));
+  result.constant_albedo = mean_albedo(*scene.albedo);
+  const PlanarScene constant = with_constant_albedo(scene, result.constant_albedo);
+  const TimedImage floor = render_planar_reference(constant, budget.floor_noise, budget.max_paths, seed + 3);
+  result.floor =
+      measure(constant, parse_planar_method("homogeneous"), profile, floor.image, budget.spp, seed + 4);
+  return result;
+}
+
+KernelMap measure_kernel(const PlanarScene& scene, Vec2 exit, const std::vector<PlanarMethod>& methods,
+                         const ProfileTable& profile, const ValidationBudget& budget, uint64_t seed) {
+  KernelMap map;
+  map.scene = scene.name;
+  // The centre of a pixel, so that the reference's light is one pixel.
+  map.exit = scene.view.point(glm::floor(scene.view.pixel(exit)) + 0.5);
+  // Both ends average over T(cos) / (pi c), so the true S is reciprocal: light on the exit's pixel, seen as
+  // radiosity everywhere, is S from everywhere to the exit: radiosity / pi = c L S x area.
+  PlanarScene lit = scene;
+  lit.light.shape = PlanarLight::Shape::square;
+  lit.light.centre = map.exit;
+  lit.light.radius = 0.5 * scene.view.size.x / scene.view.width;
+  lit.light.radiance = Rgb(1 / (diffuse_transmittance(scene.medium.eta) * lit.light.area()));
+  lit.view.radiosity = true;
+  map.maps.emplace_back("reference", render_planar_reference(lit, 1e-3, budget.map_paths, seed).image);
+  for (const PlanarMethod& method : methods) {
+    const PlanarModel model(scene, method.model, profile, method.options);
+    const BssrdfPoint at_exit = model.point(map.exit);
+    Image image(scene.view.width, scene.view.height, {"R", "G", "B"});
+    for (int y = 0; y < scene.view.height; ++y)
+      for (int x = 0; x < scene.view.width; ++x) {
+        const Vec2 entry = scene.view.point(Vec2(x, y) + 0.5);
+        if (glm::distance(entry, map.exit) < 1e-9 * scene.view.size.x) continue;  // S is not finite there
+        image.set_rgb(0, x, y, model.bssrdf().evaluate(model.point(entry), at_exit));
+      }
+    map.maps.emplace_back(method.name, std::move(image));
+  }
+  return map;
+}
+
+namespace {
+
+const std::vector<std::string> standard_models{"homogeneous", "factorized",          "aggregate",
+                                               "composite",   "composite:symmetric", "composite:order1"};
+const std::vector<std::string> rival_models{"homogeneous", "factorized", "aggregate", "composite"};
+
+std::vector<PlanarMethod> parse_all(const std::vector<std::string>& names) {
+  std::vector<PlanarMethod> methods;
+  for (const std::string& name : names) methods.push_back(parse_planar_method(name));
+  return methods;
+}
+
+std::vector<FootprintOptions> footprint_plan(const ValidationBudget& budget, uint64_t seed) {
+  FootprintOptions unweighted;
+  unweighted.paths = budget.footprint_paths;
+  unweighted.seed = seed;
+  std::vector<FootprintOptions> plan;
+  for (const int max_order : {10, 100, 1000}) {
+    plan.push_back(unweighted);
+    plan.back().max_order = max_order;
+  }
+  for (const double albedo : {0.5, 0.9}) {
+    plan.push_back(unweighted);
+    plan.back().albedo = albedo;
+    plan.back().max_order = 300;
+  }
+  return plan;
+}
+
+/// Exit points of the kernel maps: where textures differ, m.
+const std::vector<std::pair<std::string, Vec2>>& kernel_points() {
+  static const std::vector<std::pair<std::string, Vec2>> points{
+      {"stripes1", {0.25, 0}}, {"stripes1", {0.75, 0}}, {"floral", {0.3, 0.4}}, {"logo", {1.2, 0.6}}};
+  return points;
+}
+
+void report_row(const SceneResult& result) {
+  std::string line = fmt::format("{}: floor {:.3f}", result.scene.name, result.floor.errors.rmse_over_rms);
+  for (const MethodResult& m : result.methods)
+    line += fmt::format(", {} {:.3f}", m.model, m.errors.rmse_over_rms);
+  say(line);
+}
+
+class ValidationRun {
+ public:
+  ValidationRun(const ValidationOptions& options)
+      : options_(options),
+        budget_(budget(options.quality)),
+        scenes_(planar_scenes(options.scenes, budget_.resolution)) {
+    methods_ = parse_all(options.models.empty() ? standard_models : options.models);
+  }
+
+  ValidationResult run() {
+    const double wall = wall_seconds(), cpu = cpu_seconds();
+    for (const PlanarScene& scene : scenes_) {
+      if (cancellation_requested()) break;
+      progress_.update(fraction_done(), scene.name);
+      // Someone who asks for certain models wants those alone.
+      const bool sweep = options_.models.empty();
+      result_.scenes.push_back(
+          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed));
+      report_row(result_.scenes.back());
+    }
+    if (options_.models.empty()) measure_kernels_and_footprints();
+    result_.cancelled = cancellation_requested();
+    result_.seconds = wall_seconds() - wall;
+    result_.cpu_seconds = cpu_seconds() - cpu;
+    return std::move(result_);
+  }
+
+ private:
+  void measure_kernels_and_footprints() {
+    const std::vector<PlanarMethod> rivals = parse_all(rival_models);
+    for (const auto& [name, exit] : kernel_points())
+      for (const PlanarScene& scene : scenes_)
+        if (scene.name == name && !cancellation_requested())
+          result_.maps.push_back(
+              measure_kernel(scene, exit, rivals, profile_for(scene), budget_, options_.seed));
+    for (const FootprintOptions& plan : footprint_plan(budget_, options_.seed)) {
+      if (cancellation_requested()) break;
+      result_.footprint_options.push_back(plan);
+      result_.footprints.push_back(measure_footprints(plan));
+    }
+  }
+
+  double fraction_done() const {
+    return static_cast<double>(result_.scenes.size()) / (1.1 * static_cast<double>(scenes_.size()));
+  }
+
+  const ValidationOptions& options_;
+  ValidationBudget budget_;
+  std::vector<PlanarScene> scenes_;
+  std::vector<PlanarMethod> methods_;
+  ValidationResult result_;
+  Progress progress_{"validating"};
+};
+
+}  // namespace
+
+ValidationResult validate_planar(const ValidationOptions& options) {
+  ValidationResult result = ValidationRun(options).run();
+  write_validation(result, options);
+  return result;
+}
+
+}  // namespace alabaster
