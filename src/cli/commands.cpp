@@ -14,11 +14,11 @@ void add_all_commands(CLI::App& app) {
   add_bake_command(app);
   add_render_command(app);
   add_batch_command(app);
+  add_validate_command(app);
 }
 
 std::string program_version() {
   return ALABASTER_VERSION;
-  add_validate_command(app);
 }
 
 int exit_code() {
