@@ -55,8 +55,8 @@ std::unique_ptr<GeodesicPath> make_projected_chord(const TriangleMesh& mesh, con
 /// arrive: borders, folds in between.
 std::unique_ptr<GeodesicPath> make_straightest_path(const TriangleMesh& mesh, const HalfEdgeMesh& half_edges);
 
-/// Shortest way along edges (A*, Hart et al. 1968): an upper bound, does not converge under refinement (7 %
-/// too long on average on a regular mesh, up to 15 %), symmetric, knows what is not connected.
+/// Shortest way along edges (A*, Hart et al. 1968): an upper bound that does not converge under refinement
+/// (10 to 20 % too long on average), symmetric, knows what is not connected.
 std::unique_ptr<Geodesic> make_edge_graph(const TriangleMesh& mesh, const HalfEdgeMesh& half_edges);
 
 /// Heat method (Crane, Weischedel & Wardetzky 2013): factored once (memory about 1 kB per vertex), then two

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "core/rng.h"
 #include "core/statistics.h"
 #include "geometry/shapes.h"
@@ -240,6 +241,27 @@ TEST_CASE("the closest point of a triangle, region by region", "[ray_scene]") {
   CHECK(glm::length(segment.point(segment.closest({1.5, 1, 0})) - Vec3(1.5, 0, 0)) < 1e-14);
   const Triangle dot{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
   CHECK(glm::length(dot.point(dot.closest({5, 5, 5})) - Vec3(1, 2, 3)) < 1e-14);
+}
+
+TEST_CASE("queries from many threads answer as they do from one", "[ray_scene]") {
+  const TriangleMesh mesh = make_torus(1, 0.4, 32);
+  const RayScene scene = scene_of(mesh);
+  constexpr std::size_t count = 2000;
+  const auto ask = [&](std::size_t i) {
+    Rng rng(9, i);
+    std::vector<Hit> hits;
+    const Ray ray = line_through_ball(rng, Vec3(0), 1.5);
+    scene.all_hits(0, ray, hits);
+    const auto nearest = scene.nearest(ray);
+    double sum = static_cast<double>(hits.size()) + (nearest ? nearest->t : 0) + scene.occluded(ray);
+    if (const auto closest = scene.closest_point(0, ray.origin)) sum += closest->distance + closest->triangle;
+    return sum;
+  };
+  std::vector<double> answers(count);
+  parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) answers[i] = ask(i);
+  });
+  for (std::size_t i = 0; i < count; ++i) CHECK(answers[i] == ask(i));
 }
 
 TEST_CASE("empty and broken scenes answer nothing", "[ray_scene]") {
