@@ -11,6 +11,7 @@ int process_exit_code = 0;
 void add_all_commands(CLI::App& app) {
   add_generate_command(app);
   add_info_command(app);
+  add_compare_command(app);
   add_bake_command(app);
   add_render_command(app);
   add_batch_command(app);

@@ -13,6 +13,7 @@ namespace alabaster {
 void add_all_commands(CLI::App& app);
 void add_generate_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_bake_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
