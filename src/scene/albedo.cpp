@@ -87,6 +87,34 @@ std::string share_text(double share) {
   return share >= 0.1 ? fmt::format("{:.0f} %", 100 * share) : fmt::format("{:.2g} %", 100 * share);
 }
 
+/// Whether some triangle is so large in texture space that it shows every texel: a circle inside it holds a
+/// square of one period. Tiled textures need no raster then.
+bool shows_every_texel(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles,
+                       const TextureMapping& mapping) {
+  if (mapping.wrap_u == Wrap::clamp || mapping.wrap_v == Wrap::clamp) return false;
+  const bool mirrored = mapping.wrap_u == Wrap::mirror || mapping.wrap_v == Wrap::mirror;
+  const double least_radius = (mirrored ? 2 : 1) * std::sqrt(0.5);
+  return std::any_of(triangles.begin(), triangles.end(), [&](uint32_t t) {
+    const Vec2 a = mapping.transform(mesh.uv(t, {0, 0}, mapping.uv_set));
+    const Vec2 b = mapping.transform(mesh.uv(t, {1, 0}, mapping.uv_set)) - a;
+    const Vec2 c = mapping.transform(mesh.uv(t, {0, 1}, mapping.uv_set)) - a;
+    const double twice_area = std::abs(b.x * c.y - b.y * c.x);
+    const double perimeter = glm::length(b) + glm::length(c) + glm::length(c - b);
+    return twice_area > least_radius * perimeter && std::isfinite(perimeter);
+  });
+}
+
+Vec3 mean_vertex_colour(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {
+  Vec3 sum(0);
+  double weight = 0;
+  for (const uint32_t t : triangles) {
+    const double area = mesh.area(t);
+    for (const uint32_t corner : mesh.attributes[t]) sum += area * Vec3(mesh.colours[corner]) / 3.0;
+    weight += area;
+  }
+  return weight > 0 ? sum / weight : Vec3(1);
+}
+
 class AlbedoBuilder {
  public:
   explicit AlbedoBuilder(Scene& scene) : scene_(scene), statistics_(scene.materials.size()) {}
@@ -151,7 +179,6 @@ class AlbedoBuilder {
     const AlbedoSource& source = material.albedo;
     constexpr int baked_side = 1024;
     const TextureMapping mapping = source.texture ? source.texture->mapping() : TextureMapping{};
-    const UvAtlas& atlas = object.atlas;
     TexelArray own;  // only when texels differ from the file's
     const TexelArray* texels = source.texture ? &source.texture->texels() : &own;
     if (!source.texture) {
@@ -163,22 +190,36 @@ class AlbedoBuilder {
       if (!exact)
         warn(material, "its scatter strength texture differs in size from its colour; its mean is used");
     }
+    const bool everywhere = shows_every_texel(object.mesh, triangles, mapping);
     if (coloured) {
       if (texels != &own) own = *texels;
       texels = &own;
-      const double disputed = bake_vertex_colours(object.mesh, triangles, mapping, own);
-      if (disputed > 0.01)
-        warn(material,
-             fmt::format("vertex colours disagree on {:.0f} % of the texels that triangles share; their "
-                         "mean is used",
-                         100 * disputed));
+      multiply_vertex_colours(object, material, triangles, mapping, everywhere, own);
     }
-    const Coverage coverage =
-        texel_coverage(object.mesh, atlas, triangles, mapping, texels->width, texels->height);
+    Coverage coverage;
+    if (everywhere)
+      coverage.weights.assign(texels->texels.size(), 1.0f);
+    else
+      coverage = texel_coverage(object.mesh, object.atlas, triangles, mapping, texels->width, texels->height);
     const AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
                                               inversion(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
     return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);
+  }
+
+  void multiply_vertex_colours(const SceneObject& object, const Material& material,
+                               const std::vector<uint32_t>& triangles, const TextureMapping& mapping,
+                               bool tiled, TexelArray& texels) {
+    if (tiled) {
+      const Vec4f mean(Vec3f(mean_vertex_colour(object.mesh, triangles)), 1);
+      for (Vec4f& texel : texels.texels) texel *= mean;
+      warn(material, "vertex colours cannot be told apart on a tiled texture; their mean is used");
+      return;
+    }
+    const double disputed = bake_vertex_colours(object.mesh, triangles, mapping, texels);
+    if (disputed > 0.01)
+      warn(material, "vertex colours disagree on " + share_text(disputed) +
+                         " of the texels that triangles share; their mean is used");
   }
 
   static bool has_colours(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {

@@ -154,6 +154,9 @@ AccessorValues read_values(const GltfDocument& document, int index, const std::s
         result.values[i * components + c] =
             to_float(data.element(i) + c * size, accessor.componentType, accessor.normalized);
   } else {
+    constexpr std::size_t most_implied = 50'000'000;
+    if (result.count > most_implied)
+      fail(document, place, fmt::format("claims {} elements, none of which are stored", result.count));
     // glTF: without a buffer view all elements are 0, then sparse values replace some.
     result.values.resize(result.count * components, 0.0f);
   }

@@ -87,7 +87,8 @@ void make_medium(Material& material, const std::string& reason) {
 
 class Rules {
  public:
-  Rules(Scene& scene, const MediumRules& rules) : scene_(scene), rules_(rules) {
+  Rules(Scene& scene, const MediumRules& rules, const std::string& file)
+      : scene_(scene), rules_(rules), file_(file) {
     for (const SceneObject& object : scene.objects) box_.extend(bounding_box(object.mesh));
   }
 
@@ -164,12 +165,13 @@ class Rules {
 
   void check(Material& material) {
     if (!(material.medium->mean_free_path.min() > 0))
-      throw InputError("material '" + material.name +
-                       "': its mean free path is 0 because the model has no size; give it in metres");
+      throw InputError(file_, "material '" + material.name + "'",
+                       "its mean free path is 0 because the model has no size; check its scale");
   }
 
   Scene& scene_;
   const MediumRules& rules_;
+  const std::string& file_;
   BoundingBox box_;
 };
 
@@ -208,7 +210,7 @@ LengthSpecification parse_length(const std::string& text) {
 
 void apply_medium_rules(Scene& scene, const MediumRules& rules, const std::string& file) {
   check_names(scene, rules, file);
-  Rules(scene, rules).run();
+  Rules(scene, rules, file).run();
 }
 
 }  // namespace alabaster
