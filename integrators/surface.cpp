@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bssrdf/placements.h"
+#include "core/error.h"
 #include "core/frame.h"
+#include "integrators/bssrdf_transport.h"
+#include "integrators/volume_transport.h"
 #include "optics/fresnel.h"
 
 namespace alabaster {
@@ -37,9 +39,7 @@ struct SurfaceIntegrator::Body {
   Medium medium;
   Rgb sigma_t;
   double sigma_min = 0;
-  std::unique_ptr<KernelPlacement> placement;
-  std::unique_ptr<Bssrdf> model;
-  std::unique_ptr<ProbeSampler> probe;
+  std::unique_ptr<SubsurfaceTransport> transport;
 };
 
 struct SurfaceIntegrator::Path {
@@ -102,19 +102,31 @@ void SurfaceIntegrator::prepare_bodies() {
       body->medium = *scene_.materials[m].medium;
       body->sigma_t = body->medium.sigma_t();
       body->sigma_min = body->sigma_t.min();
-      ProbeTarget target{&scene_.rays, &object.mesh, o, std::vector<uint8_t>(used.size(), 0)};
+      std::vector<uint8_t> boundary(used.size(), 0);
       for (std::size_t other = m; other < used.size(); ++other)
         if (used[other] && scene_.materials[other].medium == body->medium) {
-          target.material_in_medium[other] = 1;
+          boundary[other] = 1;
           body_of_[o][other] = body.get();
         }
-      body->placement = std::make_unique<ProjectedChordPlacement>(object.mesh, object.atlas, scene_.rays, o);
-      const BssrdfMedium below{&baseline_profile(), body->sigma_t, object.albedo.get()};
-      body->model = make_bssrdf(options_.model, below, {body->placement.get()});
-      body->probe = std::make_unique<ProbeSampler>(*body->model, std::move(target));
+      body->transport = make_transport(o, body->medium, std::move(boundary));
       bodies_.push_back(std::move(body));
     }
   }
+}
+
+std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t object, const Medium& medium,
+                                                                       std::vector<uint8_t> boundary) const {
+  if (options_.transport == Transport::bssrdf)
+    return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model);
+  for (const Light& light : scene_.lights)
+    if (std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
+        std::holds_alternative<DirectionalLight>(light))
+      throw InputError(scene_.name,
+                       "light without size: no walk through a smooth boundary can meet it; use a disk "
+                       "light or an environment, or --integrator surface");
+  VolumeWalkOptions walk;
+  if (options_.transport == Transport::walk) walk.albedo = WalkAlbedo::exit;
+  return std::make_unique<VolumeTransport>(scene_, object, medium, std::move(boundary), walk);
 }
 
 const SurfaceIntegrator::Body* SurfaceIntegrator::body(const Interaction& it) const {
@@ -289,13 +301,10 @@ Rgb SurfaceIntegrator::straight_through(const Interaction& it, const Arrival& ar
 
 Rgb SurfaceIntegrator::subsurface(const Interaction& it, const Body& body, const Arrival& arrival,
                                   Path& path) const {
-  const BssrdfPoint exit = body.model->medium().point(it.point);
-  const auto entry = body.probe->sample_entry(exit, path.sampler, path.vertices);
-  if (!entry || entry->weight.is_black()) {
-    ++path.vertices;
-    return Rgb();
-  }
-  SurfacePoint point = entry->point.surface;
+  const auto entry = body.transport->sample(it.point, it.towards_viewer, path.sampler, path.vertices++);
+  if (!entry || entry->weight.is_black()) return Rgb();
+  if (entry->direction) return entry->weight * entering_along(*entry, arrival, path);
+  SurfacePoint point = entry->point;
   if (!it.front) {  // the back of an open sheet: light enters on the side it is seen from
     point.geometric_normal = -point.geometric_normal;
     point.shading_normal = -point.shading_normal;
@@ -303,9 +312,18 @@ Rgb SurfaceIntegrator::subsurface(const Interaction& it, const Body& body, const
   const TriangleMesh& mesh = scene_.objects[it.point.object].mesh;
   const uint16_t material = mesh.materials[point.triangle];
   const Vec3 mirror_normal = mapped_normal(scene_.materials[material], mesh, point, it.front);
-  const Interface& interface = interfaces_[it.material_index];
-  const Rgb factor = entry->weight / (pi * interface.diffuse_transmittance);
-  return factor * entering(point, mirror_normal, interfaces_[material], pi * factor.max(), arrival, path);
+  return entry->weight *
+         entering(point, mirror_normal, interfaces_[material], pi * entry->weight.max(), arrival, path);
+}
+
+// What a walk meets where it left: lights in full, since no light sampling can reach through the boundary.
+Rgb SurfaceIntegrator::entering_along(const SubsurfaceEntry& entry, const Arrival& arrival,
+                                      Path& path) const {
+  Arrival next = arrival.specular(entry.weight.max());
+  ++next.bounces;
+  next.chain = 0;
+  return incoming(leaving(entry.point, *entry.direction), next, path) +
+         lights_.uniform_radiance(entry.point.position);
 }
 
 Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_normal,

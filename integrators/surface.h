@@ -4,18 +4,26 @@
 #include <string>
 #include <vector>
 
-#include "bssrdf/probe_sampler.h"
 #include "integrators/integrator.h"
 #include "integrators/interaction.h"
+#include "integrators/subsurface_transport.h"
 #include "scene/light_sampler.h"
 #include "scene/scene.h"
 
 namespace alabaster {
 
+/// How light travels below the surfaces.
+enum class Transport {
+  bssrdf,  // a BSSRDF model between entry and exit
+  volume,  // random walks through the volume, the albedo read at the closest surface point: the reference
+  walk     // the same walks with the exit's albedo everywhere
+};
+
 struct SurfaceOptions {
   int width = 512, height = 512;  // of the whole image, pixels
   Camera camera;
-  std::string model = "composite";  // see make_bssrdf()
+  Transport transport = Transport::bssrdf;
+  std::string model = "composite";  // of Transport::bssrdf, see make_bssrdf()
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;
   bool environment_visible = true;  // to camera rays
@@ -63,6 +71,7 @@ class SurfaceIntegrator final : public Integrator {
   /// Estimates the integral of T(cos) L cos over the hemisphere: direct light, and one bounce on.
   Rgb entering(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
                double weight, const Arrival& arrival, Path& path) const;
+  Rgb entering_along(const SubsurfaceEntry& entry, const Arrival& arrival, Path& path) const;
   Rgb entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
                           uint32_t vertex, const Path& path) const;
 
@@ -72,6 +81,8 @@ class SurfaceIntegrator final : public Integrator {
   bool lit(const SurfacePoint& point, const LightSample& light, double opacity_number) const;
 
   void prepare_bodies();
+  std::unique_ptr<SubsurfaceTransport> make_transport(uint32_t object, const Medium& medium,
+                                                      std::vector<uint8_t> boundary) const;
   const Body* body(const Interaction& it) const;
 
   const Scene& scene_;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #include "cli/commands.h"
 #include "core/error.h"
@@ -106,6 +107,9 @@ SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scen
   options.width = settings.width;
   options.height = settings.height;
   options.camera = camera;
+  options.transport = settings.integrator == "volume" ? Transport::volume
+                      : settings.integrator == "walk" ? Transport::walk
+                                                      : Transport::bssrdf;
   options.model = settings.model;
   options.depth = settings.depth;
   options.environment_visible = scene.environment_visible && !settings.load.hide_environment;

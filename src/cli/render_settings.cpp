@@ -76,8 +76,8 @@ void set_crop(RenderSettings& s, const Value& v) {
 
 void set_integrator(RenderSettings& s, const Value& v) {
   if (v.text == "planar") v.refuse("renders flat scenes only: see alabaster validate; here use surface");
-  if (v.text == "volume" || v.text == "walk") v.refuse("is not available in this version; use surface");
-  if (v.text != "surface") v.refuse("is not known; use surface");
+  if (v.text != "surface" && v.text != "volume" && v.text != "walk")
+    v.refuse("is not known; use surface, volume or walk");
   s.integrator = v.text;
 }
 
@@ -120,7 +120,7 @@ struct Option {
 const std::vector<Option>& options() {
   using S = RenderSettings;
   static const std::vector<Option> all{
-      {{"integrator", "NAME", "surface", true}, set_integrator},
+      {{"integrator", "NAME", "surface (the default), volume (the reference) or walk", true}, set_integrator},
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
       {{"basis", "NAME", "half-space", true}, set_basis},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},

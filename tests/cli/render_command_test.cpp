@@ -119,7 +119,7 @@ TEST_CASE("wrong options end with code 1, one line, and no file") {
       {"--crop", "0,0,25,5"},
       {"--sampler", "halton"},
       {"--model", "magic"},
-      {"--integrator", "volume"},
+      {"--integrator", "planar"},
       {"--integrator", "nonsense"},
       {"--basis", "shape"},
       {"--time", "-1"},

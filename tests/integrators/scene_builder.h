@@ -5,6 +5,7 @@
 #include "core/statistics.h"
 #include "geometry/shapes.h"
 #include "integrators/surface.h"
+#include "optics/profile_table.h"
 #include "scene/scene.h"
 
 namespace alabaster::test {

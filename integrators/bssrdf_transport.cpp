@@ -1,0 +1,25 @@
+#include "integrators/bssrdf_transport.h"
+
+#include "optics/fresnel.h"
+
+namespace alabaster {
+
+BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
+                                 std::vector<uint8_t> boundary, const std::string& model)
+    : lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
+      placement_(scene.objects[object].mesh, scene.objects[object].atlas, scene.rays, object) {
+  const SceneObject& body = scene.objects[object];
+  const BssrdfMedium below{&baseline_profile(), medium.sigma_t(), body.albedo.get()};
+  model_ = make_bssrdf(model, below, {&placement_});
+  probe_ = std::make_unique<ProbeSampler>(*model_,
+                                          ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary)});
+}
+
+std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3&,
+                                                       const Sampler& sampler, uint32_t occurrence) const {
+  const auto entry = probe_->sample_entry(model_->medium().point(exit), sampler, occurrence);
+  if (!entry || entry->weight.is_black()) return std::nullopt;
+  return SubsurfaceEntry{entry->point.surface, std::nullopt, entry->weight * lobe_};
+}
+
+}  // namespace alabaster

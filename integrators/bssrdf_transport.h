@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "bssrdf/bssrdf.h"
+#include "bssrdf/placements.h"
+#include "bssrdf/probe_sampler.h"
+#include "integrators/subsurface_transport.h"
+#include "scene/scene.h"
+
+namespace alabaster {
+
+/// Subsurface light by a BSSRDF: an entry found by probe rays, S_V between it and the exit.
+class BssrdfTransport final : public SubsurfaceTransport {
+ public:
+  /// `boundary` has one flag per material index: whether the medium lies below its triangles. Throws
+  /// InputError for a model that make_bssrdf() does not know. The scene outlives the transport.
+  BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
+                  const std::string& model);
+
+  std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
+                                        uint32_t occurrence) const override;
+
+ private:
+  double lobe_;  // 1 / (pi c): what leaves is spread as T(cos_o) / (pi c)
+  ProjectedChordPlacement placement_;
+  std::unique_ptr<Bssrdf> model_;
+  std::unique_ptr<ProbeSampler> probe_;
+};
+
+}  // namespace alabaster

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/rgb.h"
+#include "core/sampler.h"
+#include "geometry/surface_point.h"
+
+namespace alabaster {
+
+/// Where light that leaves a medium came in.
+struct SubsurfaceEntry {
+  SurfacePoint point;  // normals outwards
+  /// Unit, outside, towards where the light comes from; without one the light of the whole hemisphere counts.
+  std::optional<Vec3> direction;
+  /// Times the irradiance that enters, E of DESIGN section 1 (W/m^2), or times the radiance that arrives
+  /// along `direction`: an estimate of the radiance that leaves, but for the exit's transmission T(cos_o).
+  Rgb weight;
+};
+
+/// How light that scattered at least once gets from where it enters the body of one medium to where it leaves
+/// towards the camera. Light that never scattered is no part of it. Thread-safe.
+class SubsurfaceTransport {
+ public:
+  virtual ~SubsurfaceTransport() = default;
+  /// One entry for light that leaves `exit` (normals outwards) towards `viewer` (unit). Nothing where the
+  /// draw found none: it counts as black.
+  virtual std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer,
+                                                const Sampler& sampler, uint32_t occurrence) const = 0;
+};
+
+}  // namespace alabaster

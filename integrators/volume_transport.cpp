@@ -1,0 +1,62 @@
+#include "integrators/volume_transport.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace alabaster {
+
+namespace {
+
+void check_closed(const Scene& scene, const SceneObject& object) {
+  if (object.report.closed) return;
+  std::string where;
+  if (object.report.border_example.size() == 2) {
+    const Vec3 &a = object.report.border_example[0], &b = object.report.border_example[1];
+    where = fmt::format(", one from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", a.x, a.y, a.z, b.x,
+                        b.y, b.z);
+  }
+  throw InputError(
+      scene.name, "object '" + object.name + "'",
+      fmt::format("walks through the volume need a closed mesh and this has {} border edges{}; close it or "
+                  "use --integrator surface",
+                  object.report.border_edges, where));
+}
+
+void check_one_medium(const Scene& scene, const SceneObject& object, const std::vector<uint8_t>& boundary) {
+  for (const uint16_t material : object.mesh.materials)
+    if (boundary[material] == 0)
+      throw InputError(
+          scene.name, "object '" + object.name + "'",
+          "its material '" + scene.materials[material].name +
+              "' does not bound the same medium as the rest; split the object or use --integrator surface");
+}
+
+}  // namespace
+
+VolumeTransport::VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
+                                 std::vector<uint8_t> boundary, const VolumeWalkOptions& options)
+    : eta_(medium.eta),
+      walk_(scene.rays, scene.objects[object].mesh, object, boundary, medium, *scene.objects[object].albedo,
+            options) {
+  check_closed(scene, scene.objects[object]);
+  check_one_medium(scene, scene.objects[object], boundary);
+}
+
+std::optional<SubsurfaceEntry> VolumeTransport::sample(const SurfacePoint& exit, const Vec3& viewer,
+                                                       const Sampler& sampler, uint32_t occurrence) const {
+  // Snell's law, backwards along the light; the exit's Fresnel factor is the caller's. The smooth normal
+  // keeps facets out of the picture; within the walk the boundary is the geometry itself.
+  const Vec3& normal = exit.shading_normal;
+  const Vec3 along = (glm::dot(viewer, normal) * normal - viewer) / eta_;
+  const Vec3 inwards = along - std::sqrt(std::max(0.0, 1 - glm::dot(along, along))) * normal;
+  if (glm::dot(inwards, exit.geometric_normal) >= 0) return std::nullopt;
+  Rng rng = sampler.stream(Dimension::walk, occurrence);
+  const auto end = walk_.walk(exit, glm::normalize(inwards), rng);
+  if (!end || end->order == 0) return std::nullopt;
+  return SubsurfaceEntry{end->point, end->direction, end->weight};
+}
+
+}  // namespace alabaster

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "integrators/subsurface_transport.h"
+#include "integrators/volume_walk.h"
+#include "scene/scene.h"
+
+namespace alabaster {
+
+/// Subsurface light by random walks through the volume: the reference, or with the exit's albedo everywhere
+/// the walk of production renderers.
+class VolumeTransport final : public SubsurfaceTransport {
+ public:
+  /// Throws InputError where the object is open (naming an edge of its border) or where not all of its
+  /// surface bounds the medium. The scene outlives the transport.
+  VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
+                  const VolumeWalkOptions& options);
+
+  std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
+                                        uint32_t occurrence) const override;
+
+  const VolumeWalk::Counts& counts() const { return walk_.counts(); }
+
+ private:
+  double eta_;
+  VolumeWalk walk_;
+};
+
+}  // namespace alabaster
