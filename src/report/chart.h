@@ -8,9 +8,9 @@ namespace alabaster {
 
 /// One curve or cloud of points.
 struct ChartSeries {
-  std::string name;             // in the key
-  std::vector<double> x, y;     // of one length
-  std::vector<double> y_error;  // half the error bar, in units of y; empty: none
+  std::string name;               // in the key
+  std::vector<double> x, y;       // of one length
+  std::vector<double> y_error{};  // half the error bar, in units of y; empty: none
   bool line = true, points = true;
   bool emphasised = false;  // drawn thicker (a Pareto front, a reference)
 };
