@@ -17,13 +17,9 @@ Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium
 
 Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, double distance) const {
   const Rgb& sigma_t = medium_.sigma_t;
-  const auto channel = [&](int c) {
-    return sigma_t[c] * sigma_t[c] * medium_.profile->evaluate_over_albedo(albedo[c], sigma_t[c] * distance);
-  };
-  const double r = channel(0);
-  const double g = sigma_t.g == sigma_t.r && albedo.g == albedo.r ? r : channel(1);
-  const double b = sigma_t.b == sigma_t.g && albedo.b == albedo.g ? g : channel(2);
-  return {r, g, b};
+  if (sigma_t.is_grey())
+    return sigma_t.r * sigma_t.r * medium_.profile->evaluate_over_albedo(albedo, sigma_t.r * distance);
+  return sigma_t * sigma_t * medium_.profile->evaluate_over_albedo(albedo, distance * sigma_t);
 }
 
 // Half of the draws follow the exit's albedo, half the largest anywhere: a dark exit amid bright surroundings

@@ -50,8 +50,7 @@ class Bssrdf {
   const DistanceTable& distances() const { return distances_; }
 
  protected:
-  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha. Equal channels are
-  /// computed once.
+  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha.
   Rgb basis_over_albedo(const Rgb& albedo, double distance) const;
 
   BssrdfMedium medium_;

@@ -11,6 +11,7 @@
 /// exp(-lambda_k rho) / (2 pi rho), the last with the diffusion length, A(0) = 0, A(1) = 1.
 class AnalyticProfile final : public alabaster::ProfileTable {
  public:
+  using ProfileTable::evaluate_over_albedo;
   double g() const override { return 0.3; }
   double eta() const override { return 1.5; }
   double reflectance(double albedo) const override {
