@@ -87,11 +87,11 @@ std::string plot_clause(const ChartSeries& series, std::size_t block, std::size_
   const std::string look =
       fmt::format("lc rgb '{}' lw {} pt {} ps 0.9 dt {}", colours[style], series.emphasised ? 3.5 : 1.8,
                   point_types[style], series.emphasised ? 1 : dash);
-  std::string clause =
-      fmt::format("$data{} using 1:2 with {} {} title {}", block, with, look, quoted(series.name));
-  if (!series.y_error.empty())
-    clause += fmt::format(", $data{} using 1:2:3:4 with yerrorbars lc rgb '{}' lw 1 pt 0 notitle", block,
-                          colours[style]);
+  std::string clause;
+  if (!series.y_error.empty())  // below the points
+    clause = fmt::format("$data{} using 1:2:3:4 with yerrorbars lc rgb '{}' lw 1 ps 0 notitle, ", block,
+                         colours[style]);
+  clause += fmt::format("$data{} using 1:2 with {} {} title {}", block, with, look, quoted(series.name));
   return clause;
 }
 

@@ -11,6 +11,7 @@
 
 #include "optics/profile_table.h"
 #include "texture/material_map.h"
+#include "texture/vertex_albedo.h"
 
 namespace alabaster {
 
@@ -40,34 +41,6 @@ Rgb convert(const Rgb& value, const ReflectanceToAlbedo& to_albedo, double large
     albedo[c] = std::clamp(to_albedo(value[c] > 0 ? std::min(value[c], largest) : 0, c), 0.0, 1.0);
   return albedo;
 }
-
-/// COLOR_0 without a texture to hold it: interpolated between corners. Gaussians read the colour at their
-/// mean.
-class VertexColourAlbedo : public AlbedoField {
- public:
-  VertexColourAlbedo(const TriangleMesh& mesh, const Rgb& factor, const ReflectanceToAlbedo& to_albedo,
-                     double largest)
-      : mesh_(mesh), max_(0) {
-    for (const Vec4f& colour : mesh.colours) {
-      albedo_.push_back(convert(factor * Rgb(colour.r, colour.g, colour.b), to_albedo, largest));
-      for (int c = 0; c < 3; ++c) max_[c] = std::max(max_[c], albedo_.back()[c]);
-    }
-  }
-  Rgb at(const SurfacePoint& point) const override { return at(point.triangle, point.barycentric); }
-  Rgb filtered(const KernelFootprint& footprint) const override {
-    return at(footprint.triangle, footprint.barycentric);
-  }
-  Rgb max() const override { return max_; }
-
- private:
-  Rgb at(uint32_t triangle, Vec2 b) const {
-    const Index3& corner = mesh_.attributes[triangle];
-    return (1 - b.x - b.y) * albedo_[corner[0]] + b.x * albedo_[corner[1]] + b.y * albedo_[corner[2]];
-  }
-  const TriangleMesh& mesh_;
-  std::vector<Rgb> albedo_;  // per attribute
-  Rgb max_;
-};
 
 /// The multi-scatter colour times the strength texture's alpha, where both share their texels.
 TexelArray scaled_by_strength(const Texture& colour, const Texture& strength, bool& exact) {
@@ -162,8 +135,11 @@ class AlbedoBuilder {
       count(index, albedo, 1, plain.max() > largest_value(source) ? 1 : 0);
       return std::make_unique<ConstantAlbedo>(albedo);
     }
-    auto field =
-        std::make_unique<VertexColourAlbedo>(mesh, plain, inversion(material), largest_value(source));
+    std::vector<Rgb> albedo;
+    for (const Vec4f& colour : mesh.colours)
+      albedo.push_back(
+          convert(plain * Rgb(colour.r, colour.g, colour.b), inversion(material), largest_value(source)));
+    auto field = std::make_unique<VertexAlbedo>(mesh, triangles, std::move(albedo));
     for (const uint32_t t : triangles) {
       SurfacePoint middle;
       middle.triangle = t;
@@ -200,7 +176,9 @@ class AlbedoBuilder {
     if (everywhere)
       coverage.weights.assign(texels->texels.size(), 1.0f);
     else
-      coverage = texel_coverage(object.mesh, object.atlas, triangles, mapping, texels->width, texels->height);
+      coverage = texel_coverage(object.mesh,
+                                mapping.uv_set == 0 ? object.atlas : UvAtlas(object.mesh, mapping.uv_set),
+                                triangles, mapping, texels->width, texels->height);
     const AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
                                               inversion(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
