@@ -77,24 +77,39 @@ class CoverageRaster {
   int64_t work_ = 0;
 };
 
+/// The UVs at the lower and the higher end of a side.
+std::array<Vec2f, 2> end_uvs(const TriangleMesh& mesh, const std::vector<Vec2f>& uvs,
+                             const TriangleSide& side) {
+  const Index3& index = mesh.attributes[side.triangle];
+  const Vec2f from = uvs[index[side.side]], to = uvs[index[(side.side + 1) % 3]];
+  return side.forward ? std::array{from, to} : std::array{to, from};
+}
+
 /// One number per chart: triangles that share an edge with equal UVs on it are of one chart.
 std::size_t number_charts(const TriangleMesh& mesh, const std::vector<Vec2f>& uvs,
                           std::vector<uint32_t>& chart) {
   DisjointSets sets(mesh.triangle_count());
-  const auto ends = [&](const TriangleSide& side) {
-    const Index3& index = mesh.attributes[side.triangle];
-    const Vec2f from = uvs[index[side.side]], to = uvs[index[(side.side + 1) % 3]];
-    return side.forward ? std::array{from, to} : std::array{to, from};
-  };
   for_each_edge(sorted_sides(mesh), [&](const TriangleSide* first, const TriangleSide* last) {
     for (const TriangleSide* a = first; a != last; ++a)
       for (const TriangleSide* b = a + 1; b != last; ++b)
-        if (ends(*a) == ends(*b)) sets.unite(a->triangle, b->triangle);
+        if (end_uvs(mesh, uvs, *a) == end_uvs(mesh, uvs, *b)) sets.unite(a->triangle, b->triangle);
   });
   return sets.number(chart);
 }
 
 }  // namespace
+
+std::vector<UvSeam> find_uv_seams(const TriangleMesh& mesh, std::size_t uv_set) {
+  std::vector<UvSeam> seams;
+  if (uv_set >= mesh.uv_sets.size() || mesh.uv_sets[uv_set].empty()) return seams;
+  const std::vector<Vec2f>& uvs = mesh.uv_sets[uv_set];
+  for_each_edge(sorted_sides(mesh), [&](const TriangleSide* first, const TriangleSide* last) {
+    if (last - first != 2 || end_uvs(mesh, uvs, first[0]) == end_uvs(mesh, uvs, first[1])) return;
+    seams.push_back({first[0].triangle, first[1].triangle, first[0].side, first[1].side,
+                     first[0].forward != first[1].forward});
+  });
+  return seams;
+}
 
 UvAtlas::UvAtlas(const TriangleMesh& mesh, std::size_t uv_set) {
   if (uv_set >= mesh.uv_sets.size() || mesh.uv_sets[uv_set].empty()) return;

@@ -9,6 +9,18 @@
 
 namespace alabaster {
 
+/// An edge of the surface where the UVs are cut: the same edge seen from both triangles, each from its own
+/// corner `side` to corner `side + 1`.
+struct UvSeam {
+  uint32_t triangle = 0, other_triangle = 0;
+  uint8_t side = 0, other_side = 0;
+  bool reversed = true;  // the sides run in opposite directions, as neighbours wound alike do
+};
+
+/// Edges with exactly two triangles whose UVs differ there; each once, in the order of positions. Empty when
+/// the mesh has no such set.
+std::vector<UvSeam> find_uv_seams(const TriangleMesh& mesh, std::size_t uv_set = 0);
+
 /// What the UV set of a mesh looks like from the surface: charts, and how lengths map.
 class UvAtlas {
  public:

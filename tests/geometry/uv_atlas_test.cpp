@@ -85,3 +85,19 @@ TEST_CASE("every triangle can be a chart of its own", "[uv_atlas]") {
   CHECK(atlas.overlap_fraction == 0);
   for (uint32_t t = 0; t < count; ++t) CHECK(atlas.chart(t) == t);
 }
+
+TEST_CASE("seams are where charts meet, and both sides name the same edge", "[uv_atlas]") {
+  CHECK(find_uv_seams(make_plane(1, 4)).empty());
+  CHECK(find_uv_seams(TriangleMesh{}).empty());
+  const TriangleMesh blob = make_blob(1, 0.1, 24);  // six charts of 6 x 6 squares: twelve edges of a cube
+  const std::vector<UvSeam> seams = find_uv_seams(blob);
+  CHECK(seams.size() == 12 * 6);
+  const UvAtlas atlas(blob);
+  for (const UvSeam& seam : seams) {
+    CHECK(atlas.chart(seam.triangle) != atlas.chart(seam.other_triangle));
+    CHECK(seam.reversed);
+    const Index3 &a = blob.corners[seam.triangle], &b = blob.corners[seam.other_triangle];
+    CHECK(a[seam.side] == b[(seam.other_side + 1) % 3]);
+    CHECK(a[(seam.side + 1) % 3] == b[seam.other_side]);
+  }
+}
