@@ -21,21 +21,43 @@ constexpr double first_log2 = RadialBins::first_octave + 0.5 / RadialBins::per_o
 constexpr double defensive_share = 1e-3;
 
 double node_radius(int node) {
-  return RadialBins::centre(node + 1);
+  static const std::vector<double> radii = [] {
+    std::vector<double> all;
+    for (int j = 0; j < nodes; ++j) all.push_back(RadialBins::centre(j + 1));
+    return all;
+  }();
+  return radii[static_cast<std::size_t>(node)];
 }
 std::size_t sampled_index(int node, int row) {
   return static_cast<std::size_t>(node) * sampled_rows + static_cast<std::size_t>(row);
 }
 
+// Position among the rows of the albedo 1 - remainder, 0 to rows - 1.
+template <typename Float>
+inline Float row_position(Float remainder) {
+  constexpr auto inverse_knee = static_cast<float>(1 / AlbedoRows::knee);
+  constexpr auto scale = static_cast<float>((rows - 1) / AlbedoRows::length);
+  const Float root = square_root(remainder);
+  return scale * (fast_log2(1.f + root * inverse_knee) + static_cast<float>(AlbedoRows::linear) * root);
+}
+
+// Position among the radial nodes, at least 0.
+template <typename Float>
+inline Float node_position(Float rho) {
+  const Float x = (fast_log2(rho) - static_cast<float>(first_log2)) * float{RadialBins::per_octave};
+  const Float zero = x - x;
+  return x > zero ? x : zero;
+}
+
+int node_below(double rho) {
+  return std::min(static_cast<int>(node_position(static_cast<float>(rho))), nodes - 2);
+}
+
 }  // namespace
 
-struct TabulatedProfile::Node {
-  int index;       // of the lower node, at most nodes - 2
-  float fraction;  // in log rho; above 1 beyond the last node
-};
-
+// Place between two rows of the sampled density.
 struct TabulatedProfile::Row {
-  int index;  // of the lower row, at most rows - 2
+  int index;  // of the lower row, at most sampled_rows - 2
   double fraction;
 };
 
@@ -83,24 +105,6 @@ TabulatedProfile::TabulatedProfile(const TableData& data)
   }
 }
 
-TabulatedProfile::Node TabulatedProfile::node(double rho) const {
-  const float x = std::max(
-      0.f, (fast_log2(static_cast<float>(rho)) - static_cast<float>(first_log2)) * RadialBins::per_octave);
-  const int index = std::min(static_cast<int>(x), nodes - 2);
-  return {index, x - static_cast<float>(index)};
-}
-
-TabulatedProfile::Row TabulatedProfile::row(double albedo) const {
-  constexpr auto inverse_knee = static_cast<float>(1 / AlbedoRows::knee);
-  constexpr auto scale = static_cast<float>((rows - 1) / AlbedoRows::length);
-  const auto remainder = static_cast<float>(1 - std::clamp(albedo, 0.0, 1.0));
-  const float root = std::sqrt(remainder);
-  const float position =
-      scale * (fast_log2(1 + root * inverse_knee) + static_cast<float>(AlbedoRows::linear) * root);
-  const int index = std::min(static_cast<int>(position), rows - 2);
-  return {index, std::min(1.0, double{position} - index)};
-}
-
 double TabulatedProfile::reflectance(double albedo) const {
   albedo = std::clamp(albedo, 0.0, 1.0);
   return albedo * reflectance_over_albedo_(AlbedoRows::position(albedo));
@@ -117,41 +121,53 @@ double TabulatedProfile::albedo_from_reflectance(double reflectance) const {
   return low == 0 ? 1.0 : AlbedoRows::albedo(high);
 }
 
-float TabulatedProfile::log2_density(const Row& row, const Node& node) const {
-  const auto t = static_cast<float>(row.fraction), s = 1 - t;
-  const float weights[4] = {-0.5f * t * s * s, 1 + t * t * (1.5f * t - 2.5f), 1 + s * s * (1.5f * s - 2.5f),
-                            -0.5f * s * t * t};
-  const float* near = &log2_density_[static_cast<std::size_t>(node.index * spline_rows + row.index)];
-  const float* far = near + spline_rows;
-  float sum = 0;
-  for (int k = 0; k < 4; ++k) sum += weights[k] * (near[k] + node.fraction * (far[k] - near[k]));
-  return sum;
+namespace {
+
+// Catmull-Rom over the rows, linear over the nodes; four (remainder, rho) at once.
+inline Float4 interpolate(const std::vector<float>& table, Float4 remainder, Float4 rho) {
+  const Float4 position = row_position(remainder), distance = node_position(rho);
+  Int4 row = to_integer(position), node = to_integer(distance);
+  const Int4 last_row = row - row + (rows - 2), last_node = row - row + (nodes - 2);
+  row = row < last_row ? row : last_row;
+  node = node < last_node ? node : last_node;
+  const Float4 t = position - to_float(row), s = 1.f - t, along = distance - to_float(node);
+  const Int4 place = node * spline_rows + row;
+  Float4 taps[4];
+  for (int lane = 0; lane < 4; ++lane) {
+    const float* corner = &table[static_cast<std::size_t>(place[lane])];
+    const Float4 near = load4(corner), far = load4(corner + spline_rows);
+    taps[lane] = near + along[lane] * (far - near);
+  }
+  transpose(taps[0], taps[1], taps[2], taps[3]);
+  return s * t * (-0.5f * s * taps[0] - 0.5f * t * taps[3]) + (1.f + t * t * (1.5f * t - 2.5f)) * taps[1] +
+         (1.f + s * s * (1.5f * s - 2.5f)) * taps[2];
 }
 
+}  // namespace
+
 double TabulatedProfile::evaluate_over_albedo(double albedo, double rho) const {
-  return 1 / (2 * pi * rho) * double{fast_exp2(log2_density(row(albedo), node(rho)))};
+  return evaluate_over_albedo(Rgb(albedo), Rgb(rho)).r;
 }
 
 Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, double rho) const {
-  const Node place = node(rho);
-  const double scale = 1 / (2 * pi * rho);
-  const double red = scale * double{fast_exp2(log2_density(row(albedo.r), place))};
-  if (albedo.is_grey()) return Rgb(red);
-  return {red, scale * double{fast_exp2(log2_density(row(albedo.g), place))},
-          scale * double{fast_exp2(log2_density(row(albedo.b), place))}};
+  return evaluate_over_albedo(albedo, Rgb(rho));
 }
 
 Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, const Rgb& rho) const {
-  if (rho.is_grey()) return evaluate_over_albedo(albedo, rho.r);
-  return {evaluate_over_albedo(albedo.r, rho.r), evaluate_over_albedo(albedo.g, rho.g),
-          evaluate_over_albedo(albedo.b, rho.b)};
+  const auto remainder = [](double a) { return static_cast<float>(std::min(std::max(1 - a, 0.0), 1.0)); };
+  const Float4 remainders{remainder(albedo.r), remainder(albedo.g), remainder(albedo.b), 0};
+  const Float4 distances{static_cast<float>(rho.r), static_cast<float>(rho.g), static_cast<float>(rho.b), 1};
+  const Float4 density = fast_exp2(interpolate(log2_density_, remainders, distances));
+  const double scale = 1 / (2 * pi);
+  return {scale * double{density[0]} / rho.r, scale * double{density[1]} / rho.g,
+          scale * double{density[2]} / rho.b};
 }
 
 TabulatedProfile::Row TabulatedProfile::sampled_row(double albedo) const {
-  const Row fine = row(albedo);
-  const double position = (fine.index + fine.fraction) / sampled_stride;
+  const double position =
+      double{row_position(static_cast<float>(1 - std::clamp(albedo, 0.0, 1.0)))} / sampled_stride;
   const int index = std::min(static_cast<int>(position), sampled_rows - 2);
-  return {index, position - index};
+  return {index, std::min(1.0, position - index)};
 }
 
 double TabulatedProfile::blended(const std::vector<double>& table, const Row& row, int node) const {
@@ -164,7 +180,7 @@ double TabulatedProfile::pdf(double albedo, double rho) const {
   const double last = node_radius(nodes - 1);
   if (rho <= node_radius(0)) return blended(sampled_density_, place, 0);
   if (rho >= last) return blended(sampled_density_, place, nodes - 1) * (last / rho) * (last / rho);
-  const int j = node(rho).index;
+  const int j = node_below(rho);
   const double low = node_radius(j), high = node_radius(j + 1);
   const double t = std::clamp((rho - low) / (high - low), 0.0, 1.0);
   return (1 - t) * blended(sampled_density_, place, j) + t * blended(sampled_density_, place, j + 1);
@@ -175,7 +191,7 @@ double TabulatedProfile::cdf(double albedo, double rho) const {
   const double last = node_radius(nodes - 1);
   if (rho <= node_radius(0)) return blended(sampled_density_, place, 0) * rho;
   if (rho >= last) return 1 - blended(sampled_density_, place, nodes - 1) * last * last / rho;
-  const int j = node(rho).index;
+  const int j = node_below(rho);
   const double low = node_radius(j), width = node_radius(j + 1) - low;
   const double p0 = blended(sampled_density_, place, j), p1 = blended(sampled_density_, place, j + 1);
   const double t = std::clamp((rho - low) / width, 0.0, 1.0);

@@ -32,13 +32,9 @@ class TabulatedProfile final : public ProfileTable {
   double cdf(double albedo, double rho) const;
 
  private:
-  struct Node;  // place between two radial nodes
-  struct Row;   // place between two rows
+  struct Row;
 
-  Node node(double rho) const;
-  Row row(double albedo) const;
   Row sampled_row(double albedo) const;
-  float log2_density(const Row& row, const Node& node) const;
   double blended(const std::vector<double>& table, const Row& row, int node) const;
 
   double g_, eta_;
