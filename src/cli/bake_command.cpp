@@ -20,6 +20,7 @@ struct BakeArguments {
   std::string quality = "quick";
   uint64_t photons = 0;  // 0: as the quality says
   uint64_t seed = 1;
+  std::string view = "all";
   std::filesystem::path output;
 };
 
@@ -27,6 +28,7 @@ void run(const BakeArguments& arguments) {
   BakeOptions options;
   options.medium = {arguments.g, arguments.eta};
   options.seed = arguments.seed;
+  options.view = arguments.view == "normal" ? TableView::normal : TableView::all;
   options.photons = arguments.photons > 0          ? arguments.photons
                     : arguments.quality == "quick" ? quick_photons
                                                    : full_photons;
@@ -56,6 +58,9 @@ void add_bake_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--quality", arguments->quality, "quick or full")
       ->check(CLI::IsMember({"quick", "full"}))
+      ->capture_default_str();
+  command->add_option("--view", arguments->view, "outgoing light tabulated: all of it, or along the normal")
+      ->check(CLI::IsMember({"all", "normal"}))
       ->capture_default_str();
   command->add_option("--photons", arguments->photons, "number of photons instead of the quality's");
   command->add_option("--seed", arguments->seed, "random seed")->capture_default_str();

@@ -20,6 +20,7 @@ void add_all_commands(CLI::App& app) {
 
 std::string program_version() {
   return ALABASTER_VERSION;
+  add_profile_command(app);
 }
 
 int exit_code() {

@@ -10,12 +10,13 @@ namespace alabaster {
 
 struct BakeOptions {
   WalkMedium medium;
-  uint64_t photons = 16'000'000;
+  uint64_t photons = 8'000'000;
   uint64_t seed = 1;
+  TableView view = TableView::all;
 };
 
 /// Photons of the named qualities of `alabaster bake`.
-inline constexpr uint64_t quick_photons = 16'000'000, full_photons = 400'000'000;
+inline constexpr uint64_t quick_photons = 8'000'000, full_photons = 120'000'000;
 
 /// Simulates and tabulates. `progress` gets the fraction done.
 TableData bake_table(const BakeOptions& options, const std::function<void(double)>& progress = {});

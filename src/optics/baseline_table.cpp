@@ -1,6 +1,6 @@
 #include <span>
 
-#include "optics/profile_table.h"
+#include "optics/profile_store.h"
 #include "optics/tabulated_profile.h"
 
 // ALABASTER_BASELINE_TABLE is the path of assets/profile_g0.3_eta1.5.table (CMakeLists.txt).
@@ -18,10 +18,15 @@ extern "C" const char alabaster_baseline_end[];
 
 namespace alabaster {
 
-const ProfileTable& baseline_profile() {
-  static const TabulatedProfile table(decode_table(
-      std::span<const char>(alabaster_baseline_begin, alabaster_baseline_end), "the built-in table"));
+const TableData& baseline_table() {
+  static const TableData table = decode_table(
+      std::span<const char>(alabaster_baseline_begin, alabaster_baseline_end), "the built-in table");
   return table;
+}
+
+const ProfileTable& baseline_profile() {
+  static const TabulatedProfile profile(baseline_table());
+  return profile;
 }
 
 }  // namespace alabaster

@@ -13,11 +13,11 @@ template <typename Chunk>
 PathTally tally_chunks(const HalfSpaceWalkOptions& options, const std::function<void(double)>& progress,
                        const Chunk& chunk) {
   const uint64_t chunks = (options.photons + photons_per_chunk - 1) / photons_per_chunk;
-  PathTally total;
+  PathTally total(options.normal_view);
   std::mutex mutex;
   uint64_t done = 0;
   parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
-    PathTally part;
+    PathTally part(options.normal_view);
     for (std::size_t c = begin; c < end; ++c) chunk(c, part);
     const std::lock_guard<std::mutex> lock(mutex);
     total.merge(part);  // integers: the order of merging does not matter

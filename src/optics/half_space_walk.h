@@ -12,6 +12,7 @@ struct HalfSpaceWalkOptions {
   WalkMedium medium;
   uint64_t photons = 1000000;
   uint64_t seed = 1;
+  bool normal_view = false;  // also score light leaving along the normal (vector lanes only)
 };
 
 /// Photons per independent random stream; photon counts are rounded up to whole chunks.

@@ -78,13 +78,15 @@ int stage_of_group(int group) {
   return stage;
 }
 
-PathTally::PathTally()
+PathTally::PathTally(bool normal_view)
     : exits_(static_cast<std::size_t>(OrderGroups::count) * RadialBins::count),
-      directions_(static_cast<std::size_t>(OrderGroups::count) * cosine_bins) {}
+      directions_(static_cast<std::size_t>(OrderGroups::count) * cosine_bins),
+      normal_views_(normal_view ? exits_.size() : 0) {}
 
 void PathTally::merge(const PathTally& other) {
   for (std::size_t i = 0; i < exits_.size(); ++i) exits_[i] += other.exits_[i];
   for (std::size_t i = 0; i < directions_.size(); ++i) directions_[i] += other.directions_[i];
+  for (std::size_t i = 0; i < normal_views_.size(); ++i) normal_views_[i] += other.normal_views_[i];
   for (std::size_t i = 0; i < stopped_.size(); ++i) stopped_[i] += other.stopped_[i];
   collisions_ += other.collisions_;
 }
@@ -122,6 +124,13 @@ double PathTally::truncated() const {
 
 std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo) {
   return weigh(tally, albedo, RadialBins::count, [&](int group, int bin) { return tally.exits(group, bin); });
+}
+
+std::vector<Estimate> normal_view_energy_over_albedo(const PathTally& tally, double albedo, double score) {
+  std::vector<Estimate> energy = weigh(tally, albedo, RadialBins::count,
+                                       [&](int group, int bin) { return tally.normal_views(group, bin); });
+  for (Estimate& e : energy) e.value *= score, e.standard_error *= score;
+  return energy;
 }
 
 std::vector<Estimate> exit_lobe_ratio(const PathTally& tally, double albedo, double eta) {

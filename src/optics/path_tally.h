@@ -38,7 +38,8 @@ class PathTally {
  public:
   static constexpr int cosine_bins = 32;  // of the outside direction against the normal, equal in cosine
 
-  PathTally();
+  /// `normal_view`: also holds scores of light leaving along the normal.
+  explicit PathTally(bool normal_view = false);
 
   /// A photon that left after `order` >= 1 collisions at the squared distance, outside cosine in [0, 1].
   void add_exit(int64_t order, double rho_squared, double cosine_outside) {
@@ -49,6 +50,12 @@ class PathTally {
   }
   /// A photon still inside after the last collision its stage allows.
   void add_stopped(int stage) { ++stopped_[static_cast<std::size_t>(stage)]; }
+  /// One unit of score towards a viewer along the normal, from a collision of that order.
+  void add_normal_view(int64_t order, double rho_squared) {
+    const auto group = static_cast<std::size_t>(OrderGroups::index(order));
+    ++normal_views_[group * RadialBins::count +
+                    static_cast<std::size_t>(RadialBins::index_of_square(rho_squared))];
+  }
   void add_collisions(uint64_t count) { collisions_ += count; }
   void merge(const PathTally& other);
 
@@ -61,6 +68,10 @@ class PathTally {
   uint64_t exits_by_cosine(int group, int bin) const {
     return directions_[static_cast<std::size_t>(group) * cosine_bins + static_cast<std::size_t>(bin)];
   }
+  bool has_normal_view() const { return !normal_views_.empty(); }
+  uint64_t normal_views(int group, int bin) const {
+    return normal_views_[static_cast<std::size_t>(group) * RadialBins::count + static_cast<std::size_t>(bin)];
+  }
   uint64_t exits_of_stage(int stage) const;
 
   /// Energy that left, per unit that entered, divided by the albedo: A(alpha)/alpha.
@@ -69,8 +80,9 @@ class PathTally {
   double truncated() const;
 
  private:
-  std::vector<uint64_t> exits_;       // [group][radial bin]
-  std::vector<uint64_t> directions_;  // [group][cosine bin]
+  std::vector<uint64_t> exits_;         // [group][radial bin]
+  std::vector<uint64_t> directions_;    // [group][cosine bin]
+  std::vector<uint64_t> normal_views_;  // [group][radial bin], or empty
   std::vector<uint64_t> stopped_ = std::vector<uint64_t>(WalkStages::count);
   uint64_t collisions_ = 0;
 };
@@ -80,6 +92,10 @@ int stage_of_group(int group);
 
 /// The tally read at one albedo: energy per radial bin, per unit that entered, divided by the albedo.
 std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo);
+
+/// The same for light leaving along the normal: of the scores, times `score` each. The errors are those of
+/// independent scores; one photon makes several, so they are somewhat too small.
+std::vector<Estimate> normal_view_energy_over_albedo(const PathTally& tally, double albedo, double score);
 
 /// Outgoing light by outside cosine at one albedo, as its density over the assumed T(cos) cos 2 / c's.
 std::vector<Estimate> exit_lobe_ratio(const PathTally& tally, double albedo, double eta);

@@ -68,6 +68,7 @@ class LaneWalk {
       scatter(lanes);
       fly(lanes);
       settle();
+      if (tally_.has_normal_view()) look_up();
       collisions_ += static_cast<uint64_t>(active_);
     }
     tally_.add_collisions(collisions_);
@@ -152,6 +153,24 @@ class LaneWalk {
     }
   }
 
+  // From each collision a virtual turn to the normal, accepted in proportion to the phase function, and a
+  // virtual flight up, which must reach the surface.
+  void look_up() {
+    const auto g = static_cast<float>(medium_.g);
+    const float peak = 1 - std::abs(g);  // (1 + g^2 - 2 |g|)^(1/2)
+    const int lanes = (active_ + vector_width - 1) / vector_width * vector_width;
+    for (int i = 0; i < lanes; ++i) {
+      const float root = std::sqrt(1 + g * g + 2 * g * w_[i]);  // the cosine to the normal is -w
+      const float ratio = peak / root;
+      const float accepted = ratio * ratio * ratio;
+      const float flight = -fast_log(lane_rng_.uniform(i));
+      marked_[i] =
+          static_cast<int32_t>(flight > z_[i]) & static_cast<int32_t>(lane_rng_.uniform(i) <= accepted);
+    }
+    for (int i = 0; i < active_; ++i)
+      if (marked_[i]) tally_.add_normal_view(order_[i], double{x_[i]} * x_[i] + double{y_[i]} * y_[i]);
+  }
+
   bool ends(int i) {
     if (z_[i] < 0) {
       const double cosine = -static_cast<double>(w_[i]);
@@ -193,6 +212,12 @@ class LaneWalk {
 };
 
 }  // namespace
+
+double normal_view_score(const WalkMedium& medium) {
+  // Radiance outside per unit of scattered light: p exp(-z) T(1) / eta^2; times pi c / T(1).
+  const double strongest = henyey_greenstein(medium.g < 0 ? -1 : 1, medium.g);
+  return pi * diffuse_transmittance(medium.eta) * strongest / (medium.eta * medium.eta);
+}
 
 void walk_in_lanes(const WalkMedium& medium, uint64_t seed, uint64_t stream, uint64_t photons,
                    PathTally& tally) {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double log_step = 0.69314718055994530942 / RadialBins::per_octave;
 
-// Minimises sum w (y - x)^2 + stiffness sum (second differences of x)^2.
+// Minimises sum w (y - x)^2 + stiffness sum (second differences of x)^2. As rho -> 0 the density tends to a
+// constant: there slopes d x / d log rho are held to the order of 3 rho.
 Eigen::VectorXd whittaker(const Eigen::VectorXd& y, const Eigen::VectorXd& weight, double stiffness) {
   const Eigen::Index n = y.size();
   std::vector<Eigen::Triplet<double>> entries;
@@ -20,6 +21,14 @@ Eigen::VectorXd whittaker(const Eigen::VectorXd& y, const Eigen::VectorXd& weigh
   for (Eigen::Index i = 0; i + 2 < n; ++i)
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) entries.emplace_back(i + a, i + b, stiffness * stencil[a] * stencil[b]);
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
+    const double typical = 3 * RadialBins::edge(static_cast<int>(i) + 2) * log_step,
+                 flatness = 1 / (typical * typical);
+    entries.emplace_back(i, i, flatness);
+    entries.emplace_back(i + 1, i + 1, flatness);
+    entries.emplace_back(i, i + 1, -flatness);
+    entries.emplace_back(i + 1, i, -flatness);
+  }
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);

@@ -82,6 +82,9 @@ class Reader {
 
 template <typename Archive, typename Table>
 void transfer(Archive& archive, Table& table) {
+  auto view = static_cast<uint32_t>(table.view);
+  archive.field(view);
+  if constexpr (!std::is_const_v<Table>) table.view = static_cast<TableView>(view);
   archive.field(table.g);
   archive.field(table.eta);
   archive.field(table.photons);
@@ -92,6 +95,8 @@ void transfer(Archive& archive, Table& table) {
   archive.field(table.reflectance_over_albedo);
   archive.field(table.reflectance_standard_error);
   archive.field(table.log2_density);
+  archive.field(table.mixture);
+  archive.field(table.mixture_error);
 }
 
 }  // namespace
@@ -144,7 +149,8 @@ TableData decode_table(std::span<const char> bytes, const std::string& name) {
     throw InputError(name, "the profile table was altered (its checksum does not match); bake it again");
   const std::size_t rows = AlbedoRows::count;
   if (table.reflectance_over_albedo.size() != rows || table.reflectance_standard_error.size() != rows ||
-      table.log2_density.size() != rows * RadialBins::inner)
+      table.log2_density.size() != rows * RadialBins::inner ||
+      table.mixture.size() != rows * TableData::mixture_size)
     throw InputError(name, "the profile table has the wrong number of rows; bake it again");
   return table;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -23,10 +24,17 @@ struct AlbedoRows {
   static double albedo(double position);
 };
 
+/// Which outgoing light a table describes: all that leaves, or what leaves along the normal (in units in
+/// which a Fresnel-weighted cosine lobe would make the two equal).
+enum class TableView : uint32_t { all, normal };
+
 /// What a baked table holds, and how it is written. Optical units.
 struct TableData {
-  static constexpr uint32_t version = 2;
+  static constexpr uint32_t version = 3;
 
+  static constexpr int mixture_size = 5;
+
+  TableView view = TableView::all;
   double g = 0, eta = 1;
   uint64_t photons = 0, collisions = 0, seed = 0;
   double truncated = 0;    // energy still inside after the last order tallied, at alpha = 1
@@ -35,6 +43,9 @@ struct TableData {
   std::vector<double> reflectance_standard_error;  // of A / alpha
   std::vector<float>
       log2_density;  // [row][RadialBins::inner] log2 of 2 pi rho R / alpha at the bins' centres
+  /// [row][component] {a_k / alpha, lambda_k} of five exponentials, rates in a lasting order.
+  std::vector<std::array<double, 2>> mixture;
+  double mixture_error = 0;  // mean |mixture / table - 1| over rows and distances
 };
 
 /// The file's bytes: magic, version, fields in order (little-endian), checksum.

@@ -38,27 +38,26 @@ TEST_CASE("order groups tile the orders") {
 }
 
 TEST_CASE("the vectorised walk agrees with the scalar walk (z-test, significance 1e-4 over all albedos)") {
-  for (const double g : {-0.5, 0.8})
-    for (const double eta : {1.5, 1.0}) {
-      HalfSpaceWalkOptions options{{g, eta}, photons_per_chunk, 3};
-      const PathTally lanes = half_space_tally(options);
-      options.seed = 4;
-      const PathTally scalar = half_space_tally_scalar(options);
-      REQUIRE(lanes.photons() == options.photons);
-      REQUIRE(scalar.photons() == options.photons);
-      for (const double albedo : albedos) {
-        INFO("g " << g << " eta " << eta << " albedo " << albedo);
-        const double z =
-            z_value(lanes.reflectance_over_albedo(albedo), scalar.reflectance_over_albedo(albedo));
-        CHECK(two_sided_normal_p_value(z) > sidak(1e-4, 24));
-      }
+  const std::vector<WalkMedium> media{{0.3, 1.5}, {-0.5, 1.0}};
+  for (const auto& [g, eta] : media) {
+    HalfSpaceWalkOptions options{{g, eta}, photons_per_chunk, 3, false};
+    const PathTally lanes = half_space_tally(options);
+    options.seed = 4;
+    const PathTally scalar = half_space_tally_scalar(options);
+    REQUIRE(lanes.photons() == options.photons);
+    REQUIRE(scalar.photons() == options.photons);
+    for (const double albedo : albedos) {
+      INFO("g " << g << " eta " << eta << " albedo " << albedo);
+      const double z = z_value(lanes.reflectance_over_albedo(albedo), scalar.reflectance_over_albedo(albedo));
+      CHECK(two_sided_normal_p_value(z) > sidak(1e-4, 12));
     }
+  }
 }
 
 TEST_CASE("the tally does not depend on the number of threads") {
-  const HalfSpaceWalkOptions options{{0.3, 1.5}, 4 * photons_per_chunk, 9};
+  const HalfSpaceWalkOptions options{{0.3, 1.5}, 2 * photons_per_chunk, 9, false};
   std::vector<PathTally> tallies;
-  for (const int threads : {1, 2, 3}) {
+  for (const int threads : {1, 3}) {
     set_thread_count(threads);
     tallies.push_back(half_space_tally(options));
   }

@@ -1,0 +1,139 @@
+#include "optics/profile_store.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "core/error.h"
+#include "core/progress.h"
+#include "optics/bake.h"
+#include "optics/mixture_profile.h"
+#include "optics/tabulated_profile.h"
+
+namespace alabaster {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// An exclusive lock between processes; the operating system lifts it when its holder dies.
+class FileLock {
+ public:
+  explicit FileLock(const fs::path& path)
+      : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) return;
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+    say("waiting for another process that bakes " + path.stem().string());
+    flock(descriptor_, LOCK_EX);
+  }
+  ~FileLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  bool held() const { return descriptor_ >= 0; }
+
+ private:
+  int descriptor_;
+};
+
+void check(const ProfileRequest& request) {
+  if (!(request.g >= -0.99 && request.g <= 0.99))
+    throw InputError(fmt::format("g = {}: outside [-0.99, 0.99]", request.g));
+  if (!(request.eta >= 1 && request.eta <= 4))
+    throw InputError(fmt::format("eta = {}: outside [1, 4]", request.eta));
+}
+
+fs::path cache_folder() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && *cache == '/') return fs::path(cache) / "alabaster";
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && *home != '\0') return fs::path(home) / ".cache" / "alabaster";
+  return fs::temp_directory_path() / "alabaster";
+}
+
+}  // namespace
+
+ProfileStore::ProfileStore(fs::path folder, uint64_t photons)
+    : folder_(std::move(folder)), photons_(photons) {}
+
+fs::path ProfileStore::file_of(const ProfileRequest& request) const {
+  return folder_ / fmt::format("profile_g{}_eta{}{}.table", request.g, request.eta,
+                               request.view == TableView::normal ? "_normal" : "");
+}
+
+TableData ProfileStore::bake(const ProfileRequest& request) {
+  const std::string label = fmt::format("baking the profile of g = {}, eta = {}", request.g, request.eta);
+  say(label + " (once; kept in " + folder_.string() + ")");
+  Progress progress(label);
+  ++bakes_;
+  BakeOptions options;
+  options.medium = {request.g, request.eta};
+  options.photons = photons_;
+  options.view = request.view;
+  return bake_table(options, [&](double done) { progress.update(done); });
+}
+
+std::shared_ptr<const TableData> ProfileStore::load_or_bake(const ProfileRequest& request) {
+  const fs::path file = file_of(request);
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  const FileLock lock(fs::path(file).replace_extension(".lock"));
+  if (!lock.held()) {
+    warn(folder_.string() +
+         ": cannot be written, so the profile is baked for this run only; set XDG_CACHE_HOME");
+    return std::make_shared<TableData>(bake(request));
+  }
+  if (fs::exists(file, error)) {
+    try {
+      auto table = std::make_shared<TableData>(read_table(file));
+      if (table->g == request.g && table->eta == request.eta && table->view == request.view) return table;
+      warn(file.string() + ": holds the profile of another medium; baking it anew");
+    } catch (const InputError& problem) {
+      warn(std::string(problem.what()) + " (doing so)");
+    }
+  }
+  auto table = std::make_shared<TableData>(bake(request));
+  try {
+    write_table(file, *table);
+  } catch (const InputError& problem) {
+    warn(problem.what());
+  }
+  return table;
+}
+
+std::shared_ptr<const ProfileTable> ProfileStore::get(const ProfileRequest& request) {
+  check(request);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  auto& profile = profiles_[{request.g, request.eta, request.view, request.form}];
+  if (profile) return profile;
+  auto& table = tables_[{request.g, request.eta, request.view}];
+  if (!table) {
+    const bool is_baseline = request.g == baseline_table().g && request.eta == baseline_table().eta &&
+                             request.view == TableView::all;
+    table = is_baseline ? std::shared_ptr<const TableData>(&baseline_table(), [](const TableData*) {})
+                        : load_or_bake(request);
+  }
+  if (request.form == ProfileForm::mixture)
+    profile = std::make_shared<MixtureProfile>(*table);
+  else
+    profile = std::make_shared<TabulatedProfile>(*table);
+  return profile;
+}
+
+std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request) {
+  static ProfileStore store(cache_folder(), quick_photons);
+  return store.get(request);
+}
+
+std::shared_ptr<const ProfileTable> profile_for(double g, double eta) {
+  ProfileRequest request;
+  request.g = g;
+  request.eta = eta;
+  return profile_for(request);
+}
+
+}  // namespace alabaster

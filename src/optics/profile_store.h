@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <tuple>
+
+#include "optics/profile_table.h"
+#include "optics/table_data.h"
+
+namespace alabaster {
+
+/// How a table is read: interpolated (the default, the more accurate and the faster), or [EK17]'s five
+/// exponentials.
+enum class ProfileForm { tabulated, mixture };
+
+struct ProfileRequest {
+  double g = 0.3, eta = 1.5;
+  TableView view = TableView::all;
+  ProfileForm form = ProfileForm::tabulated;
+};
+
+/// Tables by (g, eta, view), baked once and kept in a folder. Safe against other threads and other processes:
+/// who comes second waits for the first one's table. A broken or outdated file is reported and baked anew;
+/// when the folder cannot be written the table is baked for this run only, with a warning.
+class ProfileStore {
+ public:
+  ProfileStore(std::filesystem::path folder, uint64_t photons);
+
+  /// Throws InputError for g outside [-0.99, 0.99] or eta outside [1, 4].
+  std::shared_ptr<const ProfileTable> get(const ProfileRequest& request);
+  std::filesystem::path file_of(const ProfileRequest& request) const;
+  /// Tables baked by this object so far.
+  int bakes() const { return bakes_; }
+
+ private:
+  std::shared_ptr<const TableData> load_or_bake(const ProfileRequest& request);
+  TableData bake(const ProfileRequest& request);
+
+  std::filesystem::path folder_;
+  uint64_t photons_;
+  int bakes_ = 0;
+  std::mutex mutex_;
+  std::map<std::tuple<double, double, TableView>, std::shared_ptr<const TableData>> tables_;
+  std::map<std::tuple<double, double, TableView, ProfileForm>, std::shared_ptr<const ProfileTable>> profiles_;
+};
+
+/// The built-in baseline, or a table of the user's cache ($XDG_CACHE_HOME/alabaster, else
+/// ~/.cache/alabaster), baked with progress on standard error when it is not there yet.
+std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request);
+std::shared_ptr<const ProfileTable> profile_for(double g, double eta);
+
+/// The data of the built-in baseline table.
+const TableData& baseline_table();
+
+}  // namespace alabaster
