@@ -13,6 +13,7 @@ void add_all_commands(CLI::App& app) {
   add_info_command(app);
   add_compare_command(app);
   add_bake_command(app);
+  add_profile_command(app);
   add_render_command(app);
   add_batch_command(app);
   add_validate_command(app);
@@ -20,7 +21,6 @@ void add_all_commands(CLI::App& app) {
 
 std::string program_version() {
   return ALABASTER_VERSION;
-  add_profile_command(app);
 }
 
 int exit_code() {
