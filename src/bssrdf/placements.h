@@ -29,8 +29,9 @@ class PlanarPlacement final : public KernelPlacement {
 class ProjectedChordPlacement final : public KernelPlacement {
  public:
   /// How far, as a fraction of the chord's image in UV, the UV difference may be off for UV to be
-  /// interpolated.
-  static constexpr double default_tolerance = 0.1;
+  /// interpolated. So wide because the Gaussians are: a mean moved by part of t_k d matters little under a
+  /// standard deviation of t_k d (docs/bssrdf_models.md has the measurement).
+  static constexpr double default_tolerance = 0.6;
 
   /// `object` is the mesh's id in `rays`; everything referred to outlives this. A negative tolerance always
   /// queries.
