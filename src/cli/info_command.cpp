@@ -186,7 +186,7 @@ void print_object(const Scene& scene, const SceneObject& object) {
 void print_material(const Material& material) {
   fmt::print("  {}: {}\n", material.name, material.medium_reason);
   if (material.medium)
-    fmt::print("    mean free path {}, g {:.3g}, eta {:.3g}, mean albedo {:.4f} / {:.4f} / {:.4f}\n",
+    fmt::print("    mean free path {}, g {:.3g}, eta {:.3g}, mean albedo {:.6f} / {:.6f} / {:.6f}\n",
                path_text(material.medium->mean_free_path), material.medium->g, material.medium->eta,
                material.mean_albedo.r, material.mean_albedo.g, material.mean_albedo.b);
   for (const auto& [role, texture] : textures_of(material))

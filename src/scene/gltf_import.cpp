@@ -174,6 +174,8 @@ class Importer {
     if (skinned) warn(fmt::format("object '{}' is skinned; it is shown in its rest pose", name));
     if (morphed)
       warn(fmt::format("object '{}' has morph targets; it is shown with its default weights", name));
+    if (counts.flat_primitives > 0)
+      warn(fmt::format("object '{}' comes without normals; it is shaded flat", name));
     if (left_over > 0)
       warn(fmt::format("object '{}': {} indices at the end make no triangle and are left out", name,
                        left_over));

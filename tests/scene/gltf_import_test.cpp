@@ -1,5 +1,7 @@
 #include "scene/gltf_import.h"
 
+#include <webp/encode.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,7 +29,7 @@ bool warned(const std::vector<std::string>& warnings, const std::string& part) {
 std::vector<uint8_t> png_of(const std::vector<std::array<uint8_t, 4>>& pixels, int width) {
   Pixels8 image(width, static_cast<int>(pixels.size()) / width, 4);
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    std::copy_n(pixels[i].begin(), 4, image.bytes.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    for (std::size_t c = 0; c < 4; ++c) image.bytes.at(4 * i + c) = pixels[i][c];
   return encode_png(image);
 }
 
@@ -379,6 +381,27 @@ TEST_CASE("textures: sRGB for colours only, samplers, transforms and the UV set 
   CHECK(material.metallic_roughness->mapping().uv_set == 1);
   CHECK(scene.objects[0].mesh.uv(0, {0, 0}, 0) == Vec2(0, 1));
   CHECK(scene.objects[0].mesh.uv(0, {0, 0}, 1) == Vec2(0, 0));
+}
+
+TEST_CASE("WebP pictures by EXT_texture_webp are preferred to their fallback") {
+  const ScratchFolder folder;
+  TinyGltfFile file;
+  file.add_square()["material"] = 0;
+  const std::array<uint8_t, 4> pixel{10, 200, 30, 255};
+  uint8_t* encoded = nullptr;
+  const std::size_t size = WebPEncodeLosslessRGBA(pixel.data(), 1, 1, 4, &encoded);
+  REQUIRE(size > 0);
+  const int view = file.add_view(std::vector<uint8_t>(encoded, encoded + size));
+  WebPFree(encoded);
+  const int texture = file.add_texture(png_of({{255, 0, 0, 255}}, 1));
+  file.root["images"].push_back({{"bufferView", view}, {"mimeType", "image/webp"}});
+  file.root["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+  file.root["extensionsRequired"] = {"EXT_texture_webp"};
+  file.root["extensionsUsed"] = {"EXT_texture_webp"};
+  file.root["materials"] = {{{"occlusionTexture", {{"index", texture}}},
+                             {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", texture}}}}}}};
+  const Material material = import_gltf(file.write(folder)).materials.at(0);
+  CHECK(material.metallic_roughness->texels().at(0, 0).g == Approx(200 / 255.0));
 }
 
 TEST_CASE("material extensions: ior, emissive strength, alpha modes") {

@@ -34,8 +34,9 @@ struct TinyGltfFile {
     while (bytes.size() % 4 != 0) bytes.push_back(0);
     json view{{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}};
     if (stride > 0) view["byteStride"] = stride;
-    const auto* raw = reinterpret_cast<const uint8_t*>(values.data());
-    bytes.insert(bytes.end(), raw, raw + values.size() * sizeof(T));
+    const std::size_t offset = bytes.size();
+    bytes.resize(offset + values.size() * sizeof(T));
+    std::memcpy(bytes.data() + offset, values.data(), values.size() * sizeof(T));
     root["bufferViews"].push_back(view);
     return static_cast<int>(root["bufferViews"].size()) - 1;
   }
