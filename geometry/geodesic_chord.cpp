@@ -98,18 +98,14 @@ class ProjectedChord final : public ChordFamily {
   std::optional<double> distance(const SurfacePoint& from, const SurfacePoint& to) const override {
     const auto points = polygon(from, to);
     if (!points) return std::nullopt;
-    double sum = 0;
-    for (std::size_t i = 1; i < points->size(); ++i)
-      sum += glm::length((*points)[i].position - (*points)[i - 1].position);
-    return sum;
+    return length_of(*points);
   }
 
   std::optional<SurfacePoint> between(const SurfacePoint& from, const SurfacePoint& to,
                                       double t) const override {
     const auto points = polygon(from, to);
-    const auto total = distance(from, to);
-    if (!points || !total) return std::nullopt;
-    double left = t * *total;
+    if (!points) return std::nullopt;
+    double left = t * length_of(*points);
     for (std::size_t i = 1; i < points->size(); ++i) {
       const Vec3 a = (*points)[i - 1].position, b = (*points)[i].position;
       const double length = glm::length(b - a);
@@ -121,6 +117,13 @@ class ProjectedChord final : public ChordFamily {
   }
 
  private:
+  static double length_of(const std::vector<SurfacePoint>& points) {
+    double sum = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+      sum += glm::length(points[i].position - points[i - 1].position);
+    return sum;
+  }
+
   std::optional<std::vector<SurfacePoint>> polygon(const SurfacePoint& from, const SurfacePoint& to) const {
     const double step = glm::length(to.position - from.position) / steps_;
     std::vector<SurfacePoint> points{from};

@@ -154,6 +154,63 @@ TEST_CASE("on a cylinder", "[geodesic]") {
   CHECK(heat.mean_absolute < 0.03);
 }
 
+TEST_CASE("on a cone, unrolled", "[geodesic]") {
+  // Apex at the origin, half-angle 30 degrees: unrolled it is half a disk (sin 30 = 1/2).
+  constexpr uint32_t around = 96, along = 32;
+  std::vector<Vec3> positions{{0, 0, 0}};
+  std::vector<Index3> corners;
+  for (uint32_t j = 1; j <= along; ++j)
+    for (uint32_t i = 0; i < around; ++i) {
+      const double r = 2.0 * j / along, phi = 2 * pi * i / around;
+      positions.push_back({0.5 * r * std::cos(phi), 0.5 * r * std::sin(phi), -r * std::sqrt(0.75)});
+      const uint32_t next = (i + 1) % around, ring = 1 + (j - 1) * around, below = ring - around;
+      if (j == 1) {
+        corners.push_back({0, ring + i, ring + next});
+      } else {
+        corners.push_back({below + i, ring + i, ring + next});
+        corners.push_back({below + i, ring + next, below + next});
+      }
+    }
+  const Methods cone(nasty::from(std::move(positions), std::move(corners)));
+  // Away from the rim and the apex, at most a third of the way around: no way over the apex is shorter.
+  const auto exact = [](const Vec3& a, const Vec3& b) {
+    const double ra = glm::length(a), rb = glm::length(b);
+    const double phi = std::abs(std::remainder(std::atan2(a.y, a.x) - std::atan2(b.y, b.x), 2 * pi));
+    if (std::min(ra, rb) < 0.4 || std::max(ra, rb) > 1.9 || phi > 2) return -1.0;
+    return std::sqrt(ra * ra + rb * rb - 2 * ra * rb * std::cos(0.5 * phi));
+  };
+  const double step = 2 * pi / around;
+  const Errors straightest = errors_of(*cone.straightest, cone, exact, 0.1, 1.2);
+  CHECK(straightest.worst < step * step);
+  CHECK(straightest.refused <= 2);
+  CHECK(errors_of(*cone.heat, cone, exact, 0.3, 1.2, 60).mean_absolute < 0.03);
+  CHECK(errors_of(*cone.projected, cone, exact, 0.1, 0.8).mean_absolute < 0.01);
+}
+
+TEST_CASE("on a torus, along the circles that are geodesics", "[geodesic]") {
+  const double ring = 1, tube = 0.4;
+  const Methods torus(make_torus(ring, tube, 160));
+  const auto at = [&](double theta, double phi) {  // around the axis, around the tube
+    const double rho = ring + tube * std::cos(phi);
+    return torus.at({rho * std::cos(theta), tube * std::sin(phi), rho * std::sin(theta)});
+  };
+  Rng rng(26);
+  for (int i = 0; i < 50; ++i) {
+    const double theta = 2 * pi * rng.uniform(), phi = 2 * pi * rng.uniform(),
+                 turn = 0.2 + 0.8 * rng.uniform();
+    const SurfacePoint start = at(theta, phi), around_tube = at(theta, phi + turn);
+    const SurfacePoint outer = at(theta, 0), along_equator = at(theta + 0.5 * turn, 0);
+    for (const Geodesic* method : {torus.corrected.get(), torus.straightest.get(), torus.projected.get()}) {
+      INFO(method->name());
+      const auto meridian = method->distance(start, around_tube),
+                 equator = method->distance(outer, along_equator);
+      REQUIRE((meridian && equator));
+      CHECK(*meridian == Approx(tube * turn).epsilon(0.02));
+      CHECK(*equator == Approx((ring + tube) * 0.5 * turn).epsilon(0.02));
+    }
+  }
+}
+
 TEST_CASE("the straightest path and the heat method converge under refinement", "[geodesic]") {
   const Methods coarse(make_blob(1, 0, 24)), fine(make_blob(1, 0, 96));
   const auto ratio = [&](auto method) {
