@@ -43,10 +43,10 @@ class TargetWeight {
     const double reach = scene.light.radius / mean_free_path;
     centre_ = scene.light.centre / mean_free_path;
     reach_squared_ = reach * reach;
-    // Diffusion's decay at the mean albedo; not steeper than what a few mean free paths of single scattering
-    // do.
+    // A quarter of diffusion's decay at the mean albedo: following all of it would spend most of the time where
+    // there is least to see.
     const double albedo = mean_albedo(*scene.albedo).max();
-    const double decay = 0.5 * std::sqrt(3 * (1 - albedo) * (1 - medium.g * albedo));
+    const double decay = 0.25 * std::sqrt(3 * (1 - albedo) * (1 - medium.g * albedo));
     farthest_ = reach + farthest_corner(scene) / mean_free_path;
     for (std::size_t i = 0; i < table_.size(); ++i) {
       const double beyond = std::max(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/atomic_file.h"
 #include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -13,6 +14,7 @@
 #include "study/planar_scene_file.h"
 #include "study/scene_sets.h"
 #include "study/validation_output.h"
+#include "study/validation_report.h"
 
 namespace alabaster {
 
@@ -208,6 +210,7 @@ class ValidationRun {
 ValidationResult validate_planar(const ValidationOptions& options) {
   ValidationResult result = ValidationRun(options).run();
   write_validation(result, options);
+  write_text_atomically(options.output / "report.html", validation_page(result, options));
   return result;
 }
 

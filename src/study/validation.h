@@ -19,7 +19,7 @@ Quality quality_from_name(const std::string& name);
 struct ValidationBudget {
   int resolution = 100;            // pixels per side
   double reference_noise = 0.008;  // of the reference, RMSE / RMS
-  double floor_noise = 0.01;       // of the reference on the constant texture
+  double floor_noise = 0.02;       // of the reference on the constant texture
   uint64_t max_paths = 400'000'000;
   uint32_t spp = 256;       // of the models
   uint32_t sweep_spp = 64;  // of the aggregate model's widths
