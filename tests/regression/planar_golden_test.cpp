@@ -1,9 +1,10 @@
 // Golden images of the planar models: what later work must not change unknowingly. After a change that is
 // meant, write them anew with
-//   build/release/tests/test_regression "[write-goldens]"
+//   ALABASTER_WRITE_GOLDENS=1 build/release/tests/test_regression "planar images are their golden ones"
 // from a release build with g++ 12, and say in the commit why they changed and by how much.
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 
 #include "core/parallel.h"
 #include "image/exr_file.h"
@@ -55,6 +56,13 @@ std::filesystem::path golden_path(const Golden& golden) {
   return source_dir() / "tests/regression/golden" / (golden.file + ".exr");
 }
 
+void write_golden(const Golden& golden) {
+  write_exr(golden_path(golden), render_golden(golden),
+            {{"model", golden.model},
+             {"samples", std::to_string(spp)},
+             {"written_by", "ALABASTER_WRITE_GOLDENS=1 build/release/tests/test_regression"}});
+}
+
 bool same_bits(const Image& a, const Image& b) {
   for (int c = 0; c < 6; ++c)
     if (!std::equal(a.plane(c), a.plane(c) + 256, b.plane(c))) return false;
@@ -64,6 +72,8 @@ bool same_bits(const Image& a, const Image& b) {
 }  // namespace
 
 TEST_CASE("planar images are their golden ones") {
+  if (std::getenv("ALABASTER_WRITE_GOLDENS") != nullptr)
+    for (const Golden& golden : goldens) write_golden(golden);
   for (const Golden& golden : goldens) {
     const Image now = render_golden(golden);
     const Image then = read_exr(golden_path(golden)).image;
@@ -90,12 +100,4 @@ TEST_CASE("planar images are bit for bit the same at any number of threads") {
     INFO(golden.file);
     CHECK(same_bits(one, five));
   }
-}
-
-TEST_CASE("write the golden images", "[.][write-goldens]") {
-  for (const Golden& golden : goldens)
-    write_exr(golden_path(golden), render_golden(golden),
-              {{"model", golden.model},
-               {"samples", std::to_string(spp)},
-               {"written_by", "build/release/tests/test_regression \"[write-goldens]\""}});
 }
