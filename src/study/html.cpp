@@ -28,10 +28,10 @@ th, td { border-bottom: 1px solid #ccc; padding: .2em .7em; text-align: right; w
 th:first-child { text-align: left } thead th { border-bottom: 2px solid #888 }
 .wide { overflow-x: auto }
 .row { display: flex; flex-wrap: wrap; gap: .8em }
-figure { margin: 0; width: 170px } figure img { width: 100%; display: block; image-rendering: pixelated; border: 1px solid #ccc; box-sizing: border-box }
+figure { margin: 0; width: 170px } figure img { width: 100%; height: auto; display: block; image-rendering: pixelated; border: 1px solid #ccc; box-sizing: border-box }
 figcaption { font-size: 12px; overflow-wrap: anywhere }
 .compare { margin: 1em 0 } .compare .stage { position: relative; width: 400px; max-width: 100% }
-.stage img { width: 100%; display: block; image-rendering: pixelated } .stage img + img { position: absolute; top: 0; left: 0 }
+.stage img { width: 100%; height: auto; display: block; image-rendering: pixelated } .stage img + img { position: absolute; top: 0; left: 0 }
 .stage .line { position: absolute; top: 0; bottom: 0; width: 2px; background: #f60 }
 .compare input { width: 400px; max-width: 100%; display: block }
 svg { max-width: 100%; height: auto }
