@@ -61,7 +61,6 @@ bool ProjectedChordPlacement::interpolates(const SurfacePoint& entry, const Surf
   const Vec2 difference = exit.uv - entry.uv;
   const Vec2 from_entry = atlas_.uv_from_surface(entry.triangle, chord);
   const Vec2 from_exit = atlas_.uv_from_surface(exit.triangle, chord);
-  // The metric at either end has to carry the chord onto the difference.
   const double allowed = tolerance_ * tolerance_ * glm::dot(difference, difference);
   const Vec2 entry_error = from_entry - difference, exit_error = from_exit - difference;
   return glm::dot(entry_error, entry_error) <= allowed && glm::dot(exit_error, exit_error) <= allowed;
@@ -73,12 +72,18 @@ void ProjectedChordPlacement::place(const SurfacePoint& entry, const SurfacePoin
   if (!interpolates(entry, exit)) return place_by_queries(entry, exit, distance, taps, footprints);
   const Mat2 at_entry = jacobian(atlas_, entry.triangle);
   const Mat2 at_exit = exit.triangle == entry.triangle ? at_entry : jacobian(atlas_, exit.triangle);
+  const Vec3 chord = exit.position - entry.position;
+  const Vec2 difference = exit.uv - entry.uv;
+  const Vec2 excess_at_entry = atlas_.uv_from_surface(entry.triangle, chord) - difference;
+  const Vec2 excess_at_exit = atlas_.uv_from_surface(exit.triangle, chord) - difference;
   const Vec3 side = needs_sideways(taps) ? sideways(entry, exit) : Vec3(0);
   for (std::size_t k = 0; k < taps.size(); ++k) {
-    const bool nearer_exit = taps[k].along > 0.5;
+    const double t = taps[k].along, s = 1 - t;
+    const bool nearer_exit = t > 0.5;
     const SurfacePoint& end = nearer_exit ? exit : entry;
     KernelFootprint& footprint = footprints[k];
-    footprint.uv = entry.uv + taps[k].along * (exit.uv - entry.uv);
+    // Hermite's cubic as the straight line and what the end slopes bend it by.
+    footprint.uv = entry.uv + t * difference + (t * s) * (s * excess_at_entry - t * excess_at_exit);
     if (taps[k].across != 0)
       footprint.uv += taps[k].across * distance * atlas_.uv_from_surface(end.triangle, side);
     footprint.barycentric = end.barycentric;

@@ -23,15 +23,15 @@ class PlanarPlacement final : public KernelPlacement {
   Mat2 uv_from_surface_;
 };
 
-/// Points of the chord between entry and exit, carried to the surface: by interpolating UV where both ends
-/// lie in one chart whose metric carries the chord onto the UV difference (exact on a plane, constant time),
-/// by closest-point queries elsewhere.
+/// Points of the chord between entry and exit, carried to the surface. Where both ends lie in one chart whose
+/// metric carries the chord about onto the UV difference: by the cubic through both UVs with the slopes that
+/// the Jacobians give the projected chord there (constant time, exact on a plane). By closest-point queries
+/// elsewhere.
 class ProjectedChordPlacement final : public KernelPlacement {
  public:
-  /// How far, as a fraction of the chord's image in UV, the UV difference may be off for UV to be
-  /// interpolated. So wide because the Gaussians are: a mean moved by part of t_k d matters little under a
-  /// standard deviation of t_k d (docs/bssrdf_models.md has the measurement).
-  static constexpr double default_tolerance = 0.6;
+  /// How far a Jacobian's image of the chord may be off the UV difference, as a fraction of it, for the cubic
+  /// to be used.
+  static constexpr double default_tolerance = 0.5;
 
   /// `object` is the mesh's id in `rays`; everything referred to outlives this. A negative tolerance always
   /// queries.
