@@ -25,7 +25,7 @@ RecipePart bowl() {
   stone.seed = 4;
   part.texture =
       std::make_shared<TexelArray>(bake_solid(part.mesh, 1024, 640, solid_stone(stone), stone.body));
-  part.medium = Medium{{0.0022, 0.0017, 0.0013}, 0.3, 1.5};
+  part.medium = Medium{{0.0013, 0.0010, 0.0008}, 0.3, 1.5};
   part.roughness = 0.22;
   return part;
 }
@@ -34,20 +34,20 @@ RecipePart pebble() {
   RecipePart part;
   part.name = "jade";
   const Mat3 flattened(1, 0, 0, 0, 0.62, 0, 0, 0, 0.8);
-  part.mesh = transformed(make_blob(0.03, 0.10, 96), flattened, {0.128, 0.0, 0.075});
+  part.mesh = transformed(make_blob(0.032, 0.10, 96), flattened, {0.118, 0.0, 0.078});
   const double floor = bounding_box(part.mesh).low.y;
   for (Vec3& p : part.mesh.positions) p.y -= floor;
   StoneParameters stone;
-  stone.body = {0.20, 0.52, 0.27};
-  stone.cloud = {0.42, 0.68, 0.44};
-  stone.vein = {0.75, 0.82, 0.66};
+  stone.body = {0.25, 0.58, 0.32};
+  stone.cloud = {0.50, 0.76, 0.52};
+  stone.vein = {0.90, 0.93, 0.80};
   stone.scale = 0.03;
   stone.vein_width = 0.06;
   stone.vein_strength = 0.7;
   stone.seed = 9;
   part.texture =
       std::make_shared<TexelArray>(bake_solid(part.mesh, 512, 512, solid_stone(stone), stone.body));
-  part.medium = Medium{{0.0016, 0.0026, 0.0018}, 0.3, 1.5};
+  part.medium = Medium{{0.0009, 0.0014, 0.0010}, 0.3, 1.5};
   part.roughness = 0.12;
   return part;
 }
@@ -57,17 +57,7 @@ RecipePart backdrop() {
   part.name = "backdrop";
   part.mesh = transformed(make_backdrop(3.0, 1.6, 1.2, 0.35), Mat3(1), {0, 0, 0.2});
   part.colour = Rgb(0.14, 0.15, 0.18);
-  part.roughness = 0.6;
-  return part;
-}
-
-RecipePart lamp() {
-  RecipePart part;
-  part.name = "lamp";
-  part.mesh = transformed(make_sphere(0.014, 24), Mat3(1), {0, 0.062, 0});
-  part.colour = Rgb(0);
-  part.roughness = 1;
-  part.emission = Rgb(30, 17, 7.5);
+  part.roughness = 0.9;
   return part;
 }
 
@@ -104,20 +94,21 @@ SceneRecipe make_demo_recipe() {
   recipe.title = "A lotus bowl of veined alabaster with a lamp in it";
   recipe.parts.push_back(bowl());
   recipe.parts.push_back(pebble());
-  recipe.parts.push_back(lamp());
   recipe.parts.push_back(backdrop());
   recipe.camera.name = "demo";
-  recipe.camera.position = {0.07, 0.19, 0.52};
-  recipe.camera.direction = glm::normalize(Vec3(0.02, 0.058, 0) - recipe.camera.position);
-  recipe.camera.vertical_fov = 30;
-  // From behind left, low: it shines through the petals' tips and the pebble's rim.
+  recipe.camera.position = {0.10, 0.17, 0.52};
+  recipe.camera.direction = glm::normalize(Vec3(0.028, 0.055, 0) - recipe.camera.position);
+  recipe.camera.vertical_fov = 25;
+  // A flame in the bowl, which makes the wall glow, and a cool light from behind that shines through the tips
+  // of the petals. Fill from the front right.
+  recipe.lights.push_back(PointLight{{0, 0.075, 0}, Rgb(0.0135, 0.0085, 0.0045)});
   const Vec3 rim_light{-0.45, 0.38, -0.42};
   recipe.lights.push_back(
-      DiskLight{rim_light, glm::normalize(Vec3(0.02, 0.05, 0) - rim_light), 0.09, Rgb(26, 30, 36)});
-  recipe.sky.ambient = Rgb(0.10, 0.12, 0.16);
-  recipe.sky.key = Rgb(0.55, 0.55, 0.6);
-  recipe.sky.exponent = 4;
-  recipe.sky.direction = {0.6, 0.7, 0.6};
+      DiskLight{rim_light, glm::normalize(Vec3(0.02, 0.05, 0) - rim_light), 0.09, Rgb(40, 42, 46)});
+  recipe.sky.ambient = Rgb(0.12, 0.14, 0.18);
+  recipe.sky.key = Rgb(1.6, 1.5, 1.4);
+  recipe.sky.exponent = 6;
+  recipe.sky.direction = {0.8, 0.6, 0.45};
   recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "960x640"}, {"spp", "64"}};
   return recipe;
 }
