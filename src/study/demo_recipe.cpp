@@ -19,9 +19,10 @@ RecipePart bowl() {
   StoneParameters stone;
   stone.body = {0.93, 0.89, 0.81};
   stone.cloud = {0.86, 0.76, 0.62};
-  stone.vein = {0.42, 0.20, 0.09};
-  stone.scale = 0.055;
-  stone.vein_width = 0.05;
+  stone.vein = {0.26, 0.10, 0.04};
+  stone.scale = 0.045;
+  stone.vein_width = 0.085;
+  stone.vein_strength = 1;
   stone.seed = 4;
   part.texture =
       std::make_shared<TexelArray>(bake_solid(part.mesh, 1024, 640, solid_stone(stone), stone.body));
@@ -91,7 +92,7 @@ SceneRecipe make_shape_recipe(const std::string& name) {
 SceneRecipe make_demo_recipe() {
   SceneRecipe recipe;
   recipe.id = "demo";
-  recipe.title = "A lotus bowl of veined alabaster with a lamp in it";
+  recipe.title = "A lotus bowl of veined alabaster, lit from behind, and a jade pebble";
   recipe.parts.push_back(bowl());
   recipe.parts.push_back(pebble());
   recipe.parts.push_back(backdrop());
@@ -99,14 +100,12 @@ SceneRecipe make_demo_recipe() {
   recipe.camera.position = {0.10, 0.17, 0.52};
   recipe.camera.direction = glm::normalize(Vec3(0.028, 0.055, 0) - recipe.camera.position);
   recipe.camera.vertical_fov = 25;
-  // A flame in the bowl, which makes the wall glow, and a cool light from behind that shines through the tips
-  // of the petals. Fill from the front right.
-  recipe.lights.push_back(PointLight{{0, 0.075, 0}, Rgb(0.0135, 0.0085, 0.0045)});
-  const Vec3 rim_light{-0.45, 0.38, -0.42};
-  recipe.lights.push_back(
-      DiskLight{rim_light, glm::normalize(Vec3(0.02, 0.05, 0) - rim_light), 0.09, Rgb(40, 42, 46)});
+  // The key comes from behind and above: it falls into the bowl and shines through the wall on our side. Fill
+  // from the front right.
+  const Vec3 key{-0.32, 0.55, -0.55};
+  recipe.lights.push_back(DiskLight{key, glm::normalize(Vec3(0.02, 0.05, 0) - key), 0.1, Rgb(75, 72, 66)});
   recipe.sky.ambient = Rgb(0.12, 0.14, 0.18);
-  recipe.sky.key = Rgb(1.6, 1.5, 1.4);
+  recipe.sky.key = Rgb(1.2, 1.15, 1.1);
   recipe.sky.exponent = 6;
   recipe.sky.direction = {0.8, 0.6, 0.45};
   recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "960x640"}, {"spp", "64"}};
