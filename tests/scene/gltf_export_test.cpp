@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "geometry/shapes.h"
+#include "scene/scene_file.h"
 #include "support/paths.h"
 #include "texture/patterns.h"
 
@@ -128,4 +129,34 @@ TEST_CASE("a file that cannot be written is the user's error, in one line") {
   scene.objects = {{"plane", &plane}};
   scene.materials.emplace_back();
   CHECK_THROWS_AS(write_glb("/proc/nowhere/a.glb", scene), InputError);
+}
+
+TEST_CASE("an exported model comes back through the importer: welded, closed, with its texture") {
+  const TriangleMesh blob = make_blob(0.05, 0.2, 48);
+  const auto pattern = std::make_shared<TexelArray>(make_pattern("dots", 40));
+  ExportScene exported;
+  exported.objects = {{"blob", &blob}};
+  exported.materials = {{"stone", Rgb(1), pattern, Wrap::repeat, 0, 0.4, Rgb(0)}};
+  const ScratchFolder folder;
+  write_glb(folder / "blob.glb", exported);
+
+  const LoadedScene loaded = load_scene(folder / "blob.glb", {});
+  REQUIRE(loaded.scene.objects.size() == 1);
+  const SceneObject& object = loaded.scene.objects[0];
+  CHECK(object.name == "blob");
+  CHECK(object.mesh.triangle_count() == blob.triangle_count());
+  CHECK(object.mesh.positions.size() == blob.positions.size());
+  CHECK(object.report.closed);
+  CHECK(object.report.degenerate_triangles + object.report.duplicate_triangles == 0);
+  CHECK(object.atlas.chart_count() == 6);
+  CHECK(enclosed_volume(object.mesh) == Approx(enclosed_volume(blob)).epsilon(1e-5));
+  REQUIRE(loaded.scene.materials.size() == 1);
+  const Material& material = loaded.scene.materials[0];
+  CHECK(material.medium.has_value());
+  CHECK(material.roughness_factor == Approx(0.4));
+  REQUIRE(material.base_colour);
+  const TexelArray& texels = material.base_colour->texels();
+  REQUIRE(texels.width == 40);
+  // One 8-bit code apart at most: half a code's width at 0.95.
+  for (int x = 0; x < 40; ++x) CHECK(texels.at(x, x).r == Approx(pattern->at(x, x).r).margin(0.005));
 }
