@@ -19,15 +19,15 @@ RecipePart bowl() {
   StoneParameters stone;
   stone.body = {0.93, 0.89, 0.81};
   stone.cloud = {0.86, 0.76, 0.62};
-  stone.vein = {0.26, 0.10, 0.04};
-  stone.scale = 0.045;
-  stone.vein_width = 0.085;
+  stone.vein = {0.16, 0.06, 0.025};
+  stone.scale = 0.04;
+  stone.vein_width = 0.1;
   stone.vein_strength = 1;
-  stone.seed = 4;
+  stone.seed = 2;
   part.texture =
-      std::make_shared<TexelArray>(bake_solid(part.mesh, 1024, 640, solid_stone(stone), stone.body));
-  part.medium = Medium{{0.0013, 0.0010, 0.0008}, 0.3, 1.5};
-  part.roughness = 0.22;
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 896, 560, solid_stone(stone), stone.body));
+  part.medium = Medium{{0.0010, 0.0008, 0.00065}, 0.3, 1.5};
+  part.roughness = 0.35;
   return part;
 }
 
@@ -47,17 +47,17 @@ RecipePart pebble() {
   stone.vein_strength = 0.7;
   stone.seed = 9;
   part.texture =
-      std::make_shared<TexelArray>(bake_solid(part.mesh, 512, 512, solid_stone(stone), stone.body));
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 400, 400, solid_stone(stone), stone.body));
   part.medium = Medium{{0.0009, 0.0014, 0.0010}, 0.3, 1.5};
-  part.roughness = 0.12;
+  part.roughness = 0.25;
   return part;
 }
 
 RecipePart backdrop() {
   RecipePart part;
   part.name = "backdrop";
-  part.mesh = transformed(make_backdrop(3.0, 1.6, 1.2, 0.35), Mat3(1), {0, 0, 0.2});
-  part.colour = Rgb(0.14, 0.15, 0.18);
+  part.mesh = transformed(make_backdrop(5.0, 3.2, 2.0, 0.7), Mat3(1), {0, 0, 0});
+  part.colour = Rgb(0.05, 0.055, 0.07);
   part.roughness = 0.9;
   return part;
 }
@@ -68,14 +68,14 @@ SceneRecipe make_shape_recipe(const std::string& name) {
   recipe.id = name;
   RecipePart part;
   part.name = "stone";
-  part.mesh = name == "plane" ? make_plane(2 * size, 16) : make_cavity(0.6 * size, size, 96);
+  part.mesh = name == "plane" ? make_plane(2 * size, 16) : make_cavity(0.6 * size, size, 80);
   StoneParameters stone;
   stone.scale = 0.4 * size;
   stone.body = {0.85, 0.82, 0.76};
   stone.cloud = {0.75, 0.66, 0.55};
   stone.vein = {0.35, 0.20, 0.12};
   part.texture =
-      std::make_shared<TexelArray>(bake_solid(part.mesh, 512, 512, solid_stone(stone), stone.body));
+      std::make_shared<TexelArray>(bake_solid(part.mesh, 320, 320, solid_stone(stone), stone.body));
   part.medium = Medium{Rgb(0.02 * size), 0.3, 1.5};
   recipe.parts.push_back(std::move(part));
   recipe.camera.name = "study";
@@ -100,15 +100,17 @@ SceneRecipe make_demo_recipe() {
   recipe.camera.position = {0.10, 0.17, 0.52};
   recipe.camera.direction = glm::normalize(Vec3(0.028, 0.055, 0) - recipe.camera.position);
   recipe.camera.vertical_fov = 25;
-  // The key comes from behind and above: it falls into the bowl and shines through the wall on our side. Fill
-  // from the front right.
+  // The key, four lamps side by side, comes from behind and above: it falls into the bowl and shines through
+  // the wall on our side. Fill from the front right.
   const Vec3 key{-0.32, 0.55, -0.55};
-  recipe.lights.push_back(DiskLight{key, glm::normalize(Vec3(0.02, 0.05, 0) - key), 0.1, Rgb(75, 72, 66)});
-  recipe.sky.ambient = Rgb(0.12, 0.14, 0.18);
-  recipe.sky.key = Rgb(1.2, 1.15, 1.1);
-  recipe.sky.exponent = 6;
+  for (const Vec3 offset :
+       {Vec3(0.05, 0, 0), Vec3(-0.05, 0.01, 0), Vec3(0, 0.05, 0.03), Vec3(0, -0.05, -0.03)})
+    recipe.lights.push_back(PointLight{key + offset, Rgb(0.66, 0.59, 0.52)});
+  recipe.sky.ambient = Rgb(0.13, 0.15, 0.19);
+  recipe.sky.key = Rgb(1.1, 1.05, 1.0);
+  recipe.sky.exponent = 2;
   recipe.sky.direction = {0.8, 0.6, 0.45};
-  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "960x640"}, {"spp", "64"}};
+  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "720x480"}, {"spp", "96"}};
   return recipe;
 }
 

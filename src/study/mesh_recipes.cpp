@@ -27,26 +27,26 @@ StudyShape make_shape(const std::string& id) {
   const auto number = [&](const char* prefix) { return std::stod(id.substr(std::string(prefix).size())); };
   const Vec3 front(0, 0.15, 1), above(0.25, 0.75, 1);
   const auto starts_with = [&](const char* prefix) { return id.rfind(prefix, 0) == 0; };
-  if (starts_with("sphere_")) return {id, make_sphere(size, 128), size / number("sphere_"), front};
+  if (starts_with("sphere_")) return {id, make_sphere(size, 96), size / number("sphere_"), front};
   if (starts_with("cylinder_")) {
     const double mean_free_path = size / (2 * number("cylinder_"));
-    return {id, make_cylinder(size / 2, 2 * size, 128), mean_free_path, above};
+    return {id, make_cylinder(size / 2, 2 * size, 96), mean_free_path, above};
   }
-  if (id == "torus") return {id, make_torus(0.75 * size, 0.25 * size, 192), size / 12, above};
+  if (id == "torus") return {id, make_torus(0.75 * size, 0.25 * size, 144), size / 12, above};
   if (starts_with("ellipsoid_"))
-    return {id, make_ellipsoid({size, size / 3, size / 3}, 128), size / (3 * number("ellipsoid_")), front};
-  if (id == "blob") return {id, make_blob(0.8 * size, 0.2, 192), 0.08 * size, front};
+    return {id, make_ellipsoid({size, size / 3, size / 3}, 96), size / (3 * number("ellipsoid_")), front};
+  if (id == "blob") return {id, make_blob(0.8 * size, 0.2, 144), 0.08 * size, front};
   if (id == "fold") {
     const double mean_free_path = size / 10;
     return {id,
-            make_folded_sheet(2 * size, 2 * mean_free_path, 0.5 * mean_free_path, 48),
+            make_folded_sheet(2 * size, 2 * mean_free_path, 0.5 * mean_free_path, 32),
             mean_free_path,
             {-0.8, 0.55, 1}};
   }
   if (starts_with("slab_")) {
     const double mean_free_path = size / 10;
     return {
-        id, make_slab(2 * size, number("slab_") * mean_free_path, 48), mean_free_path, {0.25, 1.2, 1}, true};
+        id, make_slab(2 * size, number("slab_") * mean_free_path, 36), mean_free_path, {0.25, 1.2, 1}, true};
   }
   throw InputError("scene '" + id + "': is not a mesh scene; known are those of expand_scene_ids(\"mesh\")");
 }
