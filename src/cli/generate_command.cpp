@@ -1,40 +1,60 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "cli/commands.h"
 #include "core/progress.h"
 #include "study/demo_recipe.h"
+#include "texture/patterns.h"
 
 namespace alabaster {
 
 namespace {
 
 struct GenerateOptions {
-  std::vector<std::string> names{"all"};
+  std::vector<std::string> names{"scenes"};
   std::string folder = ".";
   bool list = false;
 };
 
+bool is_pattern(const std::string& name) {
+  const auto& patterns = pattern_names();
+  return std::find(patterns.begin(), patterns.end(), name) != patterns.end();
+}
+
+/// Names of groups replaced by what they hold.
+std::vector<std::string> expand(const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const bool all = name == "all";
+    if (all || name == "scenes") result.insert(result.end(), recipe_names().begin(), recipe_names().end());
+    if (all || name == "textures")
+      result.insert(result.end(), pattern_names().begin(), pattern_names().end());
+    if (!all && name != "scenes" && name != "textures") result.push_back(name);
+  }
+  return result;
+}
+
 void generate(const GenerateOptions& options) {
   if (options.list) {
-    for (const std::string& name : recipe_names()) fmt::print("{}\n", name);
+    for (const std::string& name : expand({"all"})) fmt::print("{}\n", name);
     return;
   }
-  std::vector<std::string> names;
-  for (const std::string& name : options.names)
-    if (name == "all")
-      names.insert(names.end(), recipe_names().begin(), recipe_names().end());
-    else
-      names.push_back(name);
-  for (const std::string& name : names) {
+  for (const std::string& name : expand(options.names)) {
+    const std::string stem = (std::filesystem::path(options.folder) / name).string();
+    if (is_pattern(name)) {
+      write_pattern_file(name, options.folder);
+      say(stem + ".png: albedo texture");
+      continue;
+    }
     const SceneRecipe recipe = make_recipe(name);
     write_scene_files(recipe, options.folder);
     std::size_t triangles = 0;
     for (const RecipePart& part : recipe.parts) triangles += part.mesh.triangle_count();
-    const auto stem = std::filesystem::path(options.folder) / name;
-    say(fmt::format("{0}.glb, {0}.json: {1}, {2} triangles", stem.string(), recipe.title, triangles));
+    say(fmt::format("{0}.glb, {0}.json: {1}, {2} triangles", stem, recipe.title, triangles));
   }
 }
 
@@ -42,10 +62,12 @@ void generate(const GenerateOptions& options) {
 
 void add_generate_command(CLI::App& app) {
   auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = app.add_subcommand("generate", "Write the procedural scenes: models with scene files");
-  command->add_option("names", options->names, "Which ones, or all; --list tells their names")
+  CLI::App* command =
+      app.add_subcommand("generate", "Write the procedural scenes (models with scene files) and textures");
+  command
+      ->add_option("names", options->names, "Which ones, or scenes, textures, all; --list tells their names")
       ->capture_default_str();
-  command->add_option("-o,--output", options->folder, "Folder for NAME.glb and NAME.json")
+  command->add_option("-o,--output", options->folder, "Folder for NAME.glb and NAME.json, or NAME.png")
       ->capture_default_str();
   command->add_flag("--list", options->list, "Print the names and do nothing else");
   command->callback([options] { generate(*options); });

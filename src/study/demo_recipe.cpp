@@ -6,6 +6,7 @@
 #include "geometry/shapes.h"
 #include "geometry/still_life.h"
 #include "study/scene_sets.h"
+#include "texture/patterns.h"
 #include "texture/solid_texture.h"
 
 namespace alabaster {
@@ -131,7 +132,9 @@ SceneRecipe make_recipe(const std::string& name) {
   if (std::find(names.begin(), names.end(), name) != names.end()) return make_mesh_study_recipe(name);
   std::string known;
   for (const std::string& each : names) known += ", " + each;
-  throw InputError("'" + name + "': no procedural scene has that name; known are all" + known);
+  for (const std::string& each : pattern_names()) known += ", " + each;
+  throw InputError("'" + name + "': nothing procedural has that name; known are all, scenes, textures" +
+                   known);
 }
 
 }  // namespace alabaster

@@ -7,8 +7,8 @@
 
 namespace alabaster {
 
-/// The picture on the first page: a lotus bowl of veined stone lit from behind, a jade pebble beside it, before
-/// a grey backdrop.
+/// The picture on the first page: a lotus bowl of veined stone lit from behind, a jade pebble beside it,
+/// before a grey backdrop.
 SceneRecipe make_demo_recipe();
 
 /// Shapes of geometry/shapes.h that no study uses, in veined stone, for trying the renderer on: plane,

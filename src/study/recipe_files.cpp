@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "core/atomic_file.h"
+#include "image/png_file.h"
 #include "optics/profile_table.h"
 #include "scene/gltf_export.h"
 #include "study/scene_recipe.h"
+#include "texture/patterns.h"
 
 namespace alabaster {
 
@@ -160,6 +164,17 @@ void write_scene_files(const SceneRecipe& recipe, const std::filesystem::path& f
   }
   write_glb(folder / (recipe.id + ".glb"), scene);
   write_text_atomically(folder / (recipe.id + ".json"), to_text(scene_json(recipe)));
+}
+
+void write_pattern_file(const std::string& name, const std::filesystem::path& folder) {
+  const TexelArray texels = make_pattern(name);
+  Pixels8 pixels(texels.width, texels.height, 3);
+  for (int y = 0; y < texels.height; ++y)
+    for (int x = 0; x < texels.width; ++x)
+      for (int c = 0; c < 3; ++c)
+        pixels.at(x, y)[c] =
+            static_cast<uint8_t>(std::lround(255 * std::clamp(texels.at(x, y)[c], 0.0f, 1.0f)));
+  write_png(folder / (name + ".png"), pixels);
 }
 
 }  // namespace alabaster

@@ -48,4 +48,8 @@ Scene build_scene(SceneRecipe recipe);
 /// them back on loading (the baseline's reflectance, 8 bits per channel).
 void write_scene_files(const SceneRecipe& recipe, const std::filesystem::path& folder);
 
+/// Writes NAME.png into `folder`: a pattern of texture/patterns.h as data (no sRGB), albedo 1 being white. It
+/// is what a scene file's "albedo" takes. Throws InputError.
+void write_pattern_file(const std::string& name, const std::filesystem::path& folder);
+
 }  // namespace alabaster
