@@ -55,7 +55,8 @@ class GaussianPyramid {
   void add_coarser_levels();
 
   Vec4f gather(Vec2 st, double variance) const;
-  Rgb resolve(Vec2 st, double sigma_texels, const Vec4f& sum) const;
+  Vec4f gather_along(Vec2 st, Vec2 axis, double narrow, double extra) const;
+  Rgb resolve(Vec2 st, double variance, const Vec4f& sum) const;
 
   std::vector<Level> levels_;
   std::vector<double> level_from_;  // smallest total variance served by level 1, 2, ...; texels of level 0
