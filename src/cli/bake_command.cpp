@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "optics/bake.h"
+#include "study/optics_report.h"
 
 namespace alabaster {
 
@@ -22,9 +23,12 @@ struct BakeArguments {
   uint64_t seed = 1;
   std::string view = "all";
   std::filesystem::path output;
+  std::filesystem::path report;
 };
 
 void run(const BakeArguments& arguments) {
+  if (!arguments.report.empty() && arguments.view != "all")
+    throw InputError("--report measures tables of all outgoing light; leave out --view normal");
   BakeOptions options;
   options.medium = {arguments.g, arguments.eta};
   options.seed = arguments.seed;
@@ -39,6 +43,12 @@ void run(const BakeArguments& arguments) {
     table = bake_table(options, [&](double done) { progress.update(done); });
   }
   write_table(arguments.output, table);
+  if (!arguments.report.empty()) {
+    Progress progress("simulating once more to measure the table");
+    const HalfSpaceWalkOptions check{options.medium, options.photons / 2, options.seed + 100, false};
+    write_optics_report(half_space_tally(check, [&](double done) { progress.update(done); }), table,
+                        arguments.report);
+  }
   say(fmt::format("{}: {} photons, {:.3g} collisions, {} ({:.1f} M collisions per CPU second)",
                   arguments.output.string(), table.photons, static_cast<double>(table.collisions),
                   format_duration(wall_seconds() - start),
@@ -65,6 +75,9 @@ void add_bake_command(CLI::App& app) {
   command->add_option("--photons", arguments->photons, "number of photons instead of the quality's");
   command->add_option("--seed", arguments->seed, "random seed")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "table file to write")->required();
+  command->add_option(
+      "--report", arguments->report,
+      "folder for figures of the table's and other fits' accuracy, against a second simulation");
   command->callback([arguments] { run(*arguments); });
 }
 

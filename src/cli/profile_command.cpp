@@ -13,7 +13,7 @@
 #include "core/vec.h"
 #include "optics/albedo_walk.h"
 #include "optics/profile_fit.h"
-#include "report/gnuplot.h"
+#include "report/chart.h"
 
 namespace alabaster {
 
@@ -131,20 +131,28 @@ void print_text(const AlbedoWalkResult& result, const Profile& profile) {
 }
 
 void write_plot(const ProfileArguments& arguments, const Profile& profile) {
-  std::string script = fmt::format(
-      "set logscale xy\nset xlabel 'optical distance rho'\nset ylabel 'rho R(rho)'\nset format y "
-      "'10^{{%T}}'\n"
-      "set title 'alpha = {}, g = {}, eta = {}'\n$profile << END\n",
-      arguments.walk.albedo, arguments.walk.medium.g, arguments.walk.medium.eta);
+  Chart chart;
+  chart.title = fmt::format("alpha = {}, g = {}, eta = {}", arguments.walk.albedo, arguments.walk.medium.g,
+                            arguments.walk.medium.eta);
+  chart.x_label = "optical distance rho";
+  chart.y_label = "rho R(rho)";
+  chart.log_x = chart.log_y = true;
+  ChartSeries simulation, fit;
+  simulation.name = "simulation";
+  simulation.line = false;
+  fit.name = "five exponentials";
+  fit.points = false;
   for (const Annulus& a : profile.annuli) {
     const double rho = std::sqrt(a.from * a.to);
-    script +=
-        fmt::format("{:g} {:g} {:g} {:g}\n", rho, rho * a.radiosity, rho * a.standard_error, rho * a.fit);
+    simulation.x.push_back(rho);
+    simulation.y.push_back(rho * a.radiosity);
+    simulation.y_error.push_back(rho * a.standard_error);
+    fit.x.push_back(rho);
+    fit.y.push_back(rho * a.fit);
   }
-  script +=
-      "END\nplot $profile using 1:2:3 with yerrorbars pt 7 ps 0.4 title 'simulation', "
-      "$profile using 1:4 with lines lw 1.5 title 'five exponentials'\n";
-  plot_svg(arguments.plot, script);
+  chart.series.push_back(simulation);
+  if (profile.fitted_bins > 0) chart.series.push_back(fit);
+  write_chart_svg(arguments.plot, chart);
 }
 
 void run(const ProfileArguments& arguments) {

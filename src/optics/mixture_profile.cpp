@@ -19,7 +19,8 @@ double row_position(double albedo) {
 
 }  // namespace
 
-MixtureProfile::MixtureProfile(const TableData& data) : g_(data.g), eta_(data.eta) {
+MixtureProfile::MixtureProfile(const TableData& data)
+    : g_(data.g), eta_(data.eta), reflectance_over_albedo_(data.reflectance_over_albedo) {
   for (std::size_t k = 0; k < size; ++k) {
     std::vector<double> weights, rates;
     for (std::size_t row = 0; row < AlbedoRows::count; ++row) {
@@ -31,15 +32,21 @@ MixtureProfile::MixtureProfile(const TableData& data) : g_(data.g), eta_(data.et
   }
 }
 
-MixtureProfile::Component MixtureProfile::component(int k, double position) const {
-  return {weights_[static_cast<std::size_t>(k)](position), rates_[static_cast<std::size_t>(k)](position)};
+std::array<MixtureProfile::Component, size> MixtureProfile::components(double position) const {
+  std::array<Component, size> result{};
+  double total = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    result[k] = {weights_[k](position), rates_[k](position)};
+    total += result[k].weight;
+  }
+  const double scale = reflectance_over_albedo_(position) / total;
+  for (Component& c : result) c.weight *= scale;
+  return result;
 }
 
 double MixtureProfile::reflectance(double albedo) const {
   albedo = std::clamp(albedo, 0.0, 1.0);
-  double sum = 0;
-  for (const MonotoneCurve& weight : weights_) sum += weight(row_position(albedo));
-  return albedo * sum;
+  return albedo * reflectance_over_albedo_(row_position(albedo));
 }
 
 double MixtureProfile::albedo_from_reflectance(double reflectance) const {
@@ -52,24 +59,18 @@ double MixtureProfile::albedo_from_reflectance(double reflectance) const {
 }
 
 double MixtureProfile::evaluate_over_albedo(double albedo, double rho) const {
-  const double position = row_position(albedo);
   double density = 0;
-  for (int k = 0; k < size; ++k) {
-    const Component c = component(k, position);
+  for (const Component& c : components(row_position(albedo)))
     density += c.weight * c.rate * std::exp(-c.rate * rho);
-  }
   return density / (2 * pi * rho);
 }
 
 double MixtureProfile::pdf(double albedo, double rho) const {
   const double position = row_position(albedo);
-  double density = 0, total = 0;
-  for (int k = 0; k < size; ++k) {
-    const Component c = component(k, position);
-    density += c.weight * c.rate * std::exp(-c.rate * rho);
-    total += c.weight;
-  }
-  return (1 - defensive_share) * density / total + defensive_share / ((1 + rho) * (1 + rho));
+  double density = 0;
+  for (const Component& c : components(position)) density += c.weight * c.rate * std::exp(-c.rate * rho);
+  return (1 - defensive_share) * density / reflectance_over_albedo_(position) +
+         defensive_share / ((1 + rho) * (1 + rho));
 }
 
 double MixtureProfile::sample(double albedo, double u) const {
@@ -78,15 +79,10 @@ double MixtureProfile::sample(double albedo, double u) const {
     return v / (1 - v);
   }
   const double position = row_position(albedo);
-  std::array<Component, size> components{};
-  double total = 0;
-  for (int k = 0; k < size; ++k) {
-    components[static_cast<std::size_t>(k)] = component(k, position);
-    total += components[static_cast<std::size_t>(k)].weight;
-  }
-  double rest = (u - defensive_share) / (1 - defensive_share) * total;
-  const Component* chosen = components.data();
-  for (const Component& c : components) {
+  const std::array<Component, size> all = components(position);
+  double rest = (u - defensive_share) / (1 - defensive_share) * reflectance_over_albedo_(position);
+  const Component* chosen = all.data();
+  for (const Component& c : all) {
     if (c.weight <= 0) continue;
     chosen = &c;
     if (rest < c.weight) break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "optics/monotone_curve.h"
@@ -28,9 +29,11 @@ class MixtureProfile final : public ProfileTable {
   struct Component {
     double weight, rate;
   };
-  Component component(int k, double position) const;
+  /// All components at a row position, weights scaled to the simulated A / alpha.
+  std::array<Component, TableData::mixture_size> components(double position) const;
 
   double g_, eta_;
+  MonotoneCurve reflectance_over_albedo_;       // over the row position
   std::vector<MonotoneCurve> weights_, rates_;  // a_k / alpha and lambda_k over the row position
 };
 
