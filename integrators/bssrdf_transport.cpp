@@ -1,15 +1,17 @@
 #include "integrators/bssrdf_transport.h"
 
 #include "optics/fresnel.h"
+#include "optics/profile_store.h"
 
 namespace alabaster {
 
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
                                  std::vector<uint8_t> boundary, const std::string& model)
-    : lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
+    : profile_(profile_for(medium.g, medium.eta)),
+      lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
       placement_(scene.objects[object].mesh, scene.objects[object].atlas, scene.rays, object) {
   const SceneObject& body = scene.objects[object];
-  const BssrdfMedium below{&baseline_profile(), medium.sigma_t(), body.albedo.get()};
+  const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get()};
   model_ = make_bssrdf(model, below, {&placement_});
   probe_ = std::make_unique<ProbeSampler>(*model_,
                                           ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary)});

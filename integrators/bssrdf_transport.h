@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "bssrdf/bssrdf.h"
@@ -22,6 +23,7 @@ class BssrdfTransport final : public SubsurfaceTransport {
                                         uint32_t occurrence) const override;
 
  private:
+  std::shared_ptr<const ProfileTable> profile_;
   double lobe_;  // 1 / (pi c): what leaves is spread as T(cos_o) / (pi c)
   ProjectedChordPlacement placement_;
   std::unique_ptr<Bssrdf> model_;

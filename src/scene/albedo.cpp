@@ -9,7 +9,7 @@
 #include <set>
 #include <span>
 
-#include "optics/profile_table.h"
+#include "optics/profile_store.h"
 #include "texture/material_map.h"
 #include "texture/vertex_albedo.h"
 
@@ -31,8 +31,9 @@ ReflectanceToAlbedo inversion(const Material& material) {
     case AlbedoSource::Meaning::reflectance:
       break;
   }
-  const ProfileTable* profile = &baseline_profile();
-  return [profile](double value, int) { return profile->albedo_from_reflectance(value); };
+  return [profile = profile_for(material.medium->g, material.medium->eta)](double value, int) {
+    return profile->albedo_from_reflectance(value);
+  };
 }
 
 Rgb convert(const Rgb& value, const ReflectanceToAlbedo& to_albedo, double largest) {
@@ -251,22 +252,10 @@ class AlbedoBuilder {
       const Statistics& s = statistics_[i];
       Material& material = scene_.materials[i];
       if (s.weight > 0) material.mean_albedo = s.sum / s.weight;
-      if (s.weight > 0 && material.albedo.meaning == AlbedoSource::Meaning::reflectance)
-        warn_about_table(material);
       if (s.clamped > 0)
         warn(material, fmt::format("asks for a reflectance above {} on {} of it, which is clamped",
                                    max_reflectance, share_text(s.clamped / s.weight)));
     }
-  }
-
-  void warn_about_table(const Material& material) {
-    const ProfileTable& table = baseline_profile();
-    const Medium& medium = *material.medium;
-    if (medium.g != table.g() || medium.eta != table.eta())
-      warn(material,
-           fmt::format("there is no profile table for g {:.3g} and eta {:.3g}; its colours are inverted "
-                       "with the one of g {:.3g} and eta {:.3g}",
-                       medium.g, medium.eta, table.g(), table.eta()));
   }
 
   void warn(const Material& material, const std::string& text) {

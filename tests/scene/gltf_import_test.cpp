@@ -204,14 +204,16 @@ TEST_CASE("COLOR_0 of every component type, with and without alpha") {
   });
   CHECK(floats == Vec4f(0.25f, 0.5f, 1, 1));
   const Vec4f bytes = loaded([](TinyGltfFile& f) {
-    std::vector<uint8_t> v;
-    for (int i = 0; i < 4; ++i) v.insert(v.end(), {51, 102, 255, 204});
+    const std::array<uint8_t, 4> colour{51, 102, 255, 204};
+    std::vector<uint8_t> v(16);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = colour[i % 4];
     return f.add_accessor(v, "VEC4", true);
   });
   CHECK(glm::length(bytes - Vec4f(0.2f, 0.4f, 1, 0.8f)) < 1e-6);
   const Vec4f shorts = loaded([](TinyGltfFile& f) {
-    std::vector<uint16_t> v;
-    for (int i = 0; i < 4; ++i) v.insert(v.end(), {13107, 26214, 65535, 0});
+    const std::array<uint16_t, 4> colour{13107, 26214, 65535, 0};
+    std::vector<uint16_t> v(16);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = colour[i % 4];
     return f.add_accessor(v, "VEC4", true);
   });
   CHECK(glm::length(shorts - Vec4f(0.2f, 0.4f, 1, 0)) < 1e-6);
