@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "bssrdf/smoothed_normals.h"
 #include "core/frame.h"
 
 namespace alabaster {
@@ -12,7 +13,9 @@ namespace {
 // The figures behind these choices stand in docs/probe_sampling.md.
 
 /// Cosine between the axes and the normal.
-constexpr double axis_cosine = 0.85;
+constexpr double axis_cosine = 0.9;
+/// The normal is that of the surface smoothed over so many of the longest mean free paths.
+constexpr double facing_scale = 6;
 /// Beyond its near part a chord is searched with this probability.
 constexpr double far_probability = 0.1;
 /// The near part reaches as far as this share of the radii, plus a multiple of the radius drawn.
@@ -33,7 +36,7 @@ bool decide(double& u, double probability) {
   return false;
 }
 
-/// Three directions at equal angles to the normal and to each other: none of them can miss a flat surface,
+/// Three directions at equal angles to a normal and to each other: none of them can miss a flat surface,
 /// and a surface at a right angle to it, or at any other, is seen by one of them at least.
 std::array<Vec3, 3> tilted_axes(const Vec3& normal) {
   const Frame frame(normal);
@@ -71,6 +74,7 @@ ProbeSampler::ProbeSampler(const Bssrdf& model, ProbeTarget target)
   centre_ = bounding_box(*target_.mesh).centre();
   for (const Vec3& p : target_.mesh->positions) radius_ = std::max(radius_, glm::distance(p, centre_));
   radius_ *= 1.0001;
+  facing_ = smoothed_normals(*target_.mesh, facing_scale / model.medium().sigma_t.min());
   const Rgb brightest = model.medium().albedo->max();
   for (int c = 0; c < 3; ++c)
     brightest_level_[static_cast<std::size_t>(c)] = DistanceTable::level(brightest[c]);
@@ -91,7 +95,7 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   Exit exit;
   exit.point = point;
   const Vec3 to_centre = centre_ - point.surface.position;
-  const std::array<Vec3, 3> directions = tilted_axes(point.surface.geometric_normal);
+  const std::array<Vec3, 3> directions = tilted_axes(glm::normalize(Vec3(facing_[point.surface.triangle])));
   for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis_towards(directions[a], to_centre);
   add_components(exit, typical);
   for (int k = 0; k < exit.component_count; ++k) {

@@ -109,7 +109,8 @@ class ProbeSampler {
   const Bssrdf& model_;
   ProbeTarget target_;
   AreaSampler area_;
-  Vec3 centre_{0};  // of a sphere around the object
+  std::vector<Vec3f> facing_;  // per triangle: what the axes are tilted against
+  Vec3 centre_{0};             // of a sphere around the object
   double radius_ = 0;
   std::array<int, 3> brightest_level_{};                            // per channel
   std::array<double, DistanceTable::level_count> near_distance_{};  // optical
