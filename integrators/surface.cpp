@@ -214,8 +214,11 @@ Rgb SurfaceIntegrator::outgoing(const Interaction& it, const Arrival& arrival, P
   if (!options_.specular) return from_body(it, arrival, path);
   const Rgb mirror = fresnel(it, it.cos_viewer);
   // What the camera sees directly gets both parts; later one of them, so that paths do not multiply.
-  if (arrival.bounces == 0 && arrival.chain == 0)
-    return from_body(it, arrival, path) + mirrored(it, arrival, path);
+  if (arrival.bounces == 0 && arrival.chain == 0) {
+    // The body comes first, whatever the mirror ray meets: its random numbers stay stratified over samples.
+    const Rgb body = from_body(it, arrival, path);
+    return body + mirrored(it, arrival, path);
+  }
   const double through = (1 - mirror.max()) * std::max(0.05, it.base_colour.max());
   const double p = mirror.max() / std::max(1e-9, mirror.max() + through);
   if (path.sampler.get_1d(Dimension::lobe, path.vertices) < p) return mirrored(it, arrival, path) / p;
