@@ -31,6 +31,11 @@ uint32_t owen_scramble(uint32_t v, uint32_t seed) {
   return reverse_bits(laine_karras(reverse_bits(v), seed));
 }
 
+// owen_scramble(reverse_bits(v), seed): the first Sobol coordinate, scrambled.
+uint32_t scrambled_first(uint32_t index, uint32_t seed) {
+  return reverse_bits(laine_karras(index, seed));
+}
+
 // Second coordinate of the two-dimensional Sobol sequence; the first is the bit reversal of the index.
 // Its generator matrix is Pascal's triangle modulo 2.
 uint32_t sobol_second(uint32_t index) {
@@ -67,6 +72,7 @@ void Sampler::start(int x, int y, uint32_t index) {
   group_hash_ = hash_combine(base, group.size_class * 16 + group.group + 1);
   sample_hash_ = hash_combine(base ^ 0x5851f42d4c957f2dULL, index);
   index_in_group_ = group.index;
+  group_mask_ = group.size() - 1;
 }
 
 uint64_t Sampler::dimension_hash(Dimension dimension, uint32_t occurrence) const {
@@ -74,11 +80,17 @@ uint64_t Sampler::dimension_hash(Dimension dimension, uint32_t occurrence) const
   return hash_combine(kind_ == SamplerKind::sobol ? group_hash_ : sample_hash_, key);
 }
 
+// Only the bits within the group: those above would be the same for all its samples, and what they add to a
+// Sobol point is drowned by its scramble.
+uint32_t Sampler::shuffled_index(uint32_t seed) const {
+  return owen_scramble(index_in_group_, seed) & group_mask_;
+}
+
 double Sampler::get_1d(Dimension dimension, uint32_t occurrence) const {
   const uint64_t hash = dimension_hash(dimension, occurrence);
   if (kind_ == SamplerKind::independent) return static_cast<double>(hash >> 11) * 0x1p-53;
-  const uint32_t index = owen_scramble(index_in_group_, static_cast<uint32_t>(hash));
-  return to_unit(owen_scramble(reverse_bits(index), static_cast<uint32_t>(hash >> 32)));
+  return to_unit(
+      scrambled_first(shuffled_index(static_cast<uint32_t>(hash)), static_cast<uint32_t>(hash >> 32)));
 }
 
 Vec2 Sampler::get_2d(Dimension dimension, uint32_t occurrence) const {
@@ -86,8 +98,8 @@ Vec2 Sampler::get_2d(Dimension dimension, uint32_t occurrence) const {
   const uint64_t more = mix_bits(hash);
   if (kind_ == SamplerKind::independent)
     return {static_cast<double>(hash >> 11) * 0x1p-53, static_cast<double>(more >> 11) * 0x1p-53};
-  const uint32_t index = owen_scramble(index_in_group_, static_cast<uint32_t>(hash));
-  return {to_unit(owen_scramble(reverse_bits(index), static_cast<uint32_t>(hash >> 32))),
+  const uint32_t index = shuffled_index(static_cast<uint32_t>(hash));
+  return {to_unit(scrambled_first(index, static_cast<uint32_t>(hash >> 32))),
           to_unit(owen_scramble(sobol_second(index), static_cast<uint32_t>(more)))};
 }
 

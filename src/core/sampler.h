@@ -60,13 +60,14 @@ class Sampler {
   SamplerKind kind() const { return kind_; }
 
  private:
+  uint32_t shuffled_index(uint32_t seed) const;
   uint64_t dimension_hash(Dimension dimension, uint32_t occurrence) const;
 
   SamplerKind kind_;
   uint64_t seed_;
   uint64_t group_hash_ = 0;   // pixel, seed and group
   uint64_t sample_hash_ = 0;  // pixel, seed and sample
-  uint32_t index_in_group_ = 0;
+  uint32_t index_in_group_ = 0, group_mask_ = 3;
 };
 
 /// The scrambling groups of the Sobol sampler: 16 groups of 4 samples, then 16 of 8, 16 of 16, ...: sixteen
