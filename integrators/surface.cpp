@@ -213,14 +213,19 @@ Rgb SurfaceIntegrator::fresnel(const Interaction& it, double cosine) const {
 Rgb SurfaceIntegrator::outgoing(const Interaction& it, const Arrival& arrival, Path& path) const {
   if (!options_.specular) return from_body(it, arrival, path);
   const Rgb mirror = fresnel(it, it.cos_viewer);
+  const double strength = mirror.max();
   // What the camera sees directly gets both parts; later one of them, so that paths do not multiply.
   if (arrival.bounces == 0 && arrival.chain == 0) {
     // The body comes first, whatever the mirror ray meets: its random numbers stay stratified over samples.
+    const uint32_t vertex = path.vertices;
     const Rgb body = from_body(it, arrival, path);
-    return body + mirrored(it, arrival, path);
+    // A blurred and faint mirror image is not worth two rays every time.
+    const double q = it.roughness.is_smooth() ? 1 : std::clamp(4 * strength, 0.25, 1.0);
+    if (q < 1 && path.sampler.get_1d(Dimension::lobe, vertex) >= q) return body;
+    return body + mirrored(it, arrival, path) / q;
   }
-  const double through = (1 - mirror.max()) * std::max(0.05, it.base_colour.max());
-  const double p = mirror.max() / std::max(1e-9, mirror.max() + through);
+  const double through = (1 - strength) * std::max(0.05, it.base_colour.max());
+  const double p = strength / std::max(1e-9, strength + through);
   if (path.sampler.get_1d(Dimension::lobe, path.vertices) < p) return mirrored(it, arrival, path) / p;
   return from_body(it, arrival, path) / (1 - p);
 }

@@ -135,7 +135,11 @@ Rgb TextureAlbedo::filtered(const KernelFootprint& footprint) const {
     uv_from_surface = between_uv_sets(mesh_, footprint.triangle, mapping_.uv_set) * uv_from_surface;
   const Mat2 texels_from_st(pyramid_.width(), 0, 0, pyramid_.height());
   const Mat2 spread = footprint.sigma * (texels_from_st * (st_from_uv_ * uv_from_surface));
-  return pyramid_.filtered(st, spread * glm::transpose(spread));
+  const Mat2 covariance = spread * glm::transpose(spread);
+  const double trace = covariance[0][0] + covariance[1][1], determinant = glm::determinant(covariance);
+  // A footprint stretched by less than 2 : 1 counts as round: one lookup instead of several.
+  if (determinant >= 0.16 * trace * trace) return pyramid_.filtered(st, std::sqrt(0.5 * trace));
+  return pyramid_.filtered(st, covariance);
 }
 
 ObjectAlbedo::ObjectAlbedo(const TriangleMesh& mesh, std::vector<std::unique_ptr<AlbedoField>> fields)
