@@ -5,9 +5,19 @@
 
 namespace alabaster {
 
+namespace {
+
+/// Glass never scatters: it is spared the simulation of a profile that would be multiplied by 0.
+std::shared_ptr<const ProfileTable> profile_of(const SceneObject& body, const Medium& medium) {
+  if (body.albedo && body.albedo->max().is_black()) return profile_for(ProfileRequest{});
+  return profile_for(medium.g, medium.eta);
+}
+
+}  // namespace
+
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
                                  std::vector<uint8_t> boundary, const std::string& model)
-    : profile_(profile_for(medium.g, medium.eta)),
+    : profile_(profile_of(scene.objects[object], medium)),
       lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
       placement_(scene.objects[object].mesh, scene.objects[object].atlas, scene.rays, object) {
   const SceneObject& body = scene.objects[object];
