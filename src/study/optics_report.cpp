@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/vec.h"
 #include "optics/mixture_profile.h"
@@ -23,6 +24,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double worst_bin_error = 0.02;
+// An albedo with fewer bins than that is left out.
+constexpr std::size_t fewest_bins = 12;
 using Density = std::function<double(double)>;  // 2 pi rho R at rho
 
 const std::vector<double>& study_albedos() {
@@ -182,6 +185,7 @@ void write_profiles(const PathTally& simulation, const Method& table, const Meth
   for (const double albedo : {0.3, 0.9, 0.99, 0.9999}) {
     const Target target = target_at(simulation, albedo, g);
     ChartSeries points, lines, five;
+    if (target.data.bins.empty()) continue;
     points.name = fmt::format("alpha = {}: simulation", albedo);
     points.line = false;
     lines.name = "table";
@@ -240,7 +244,9 @@ void write_optics_report(const PathTally& simulation, const TableData& data, con
   std::vector<Target> targets;
   std::vector<Density> truth;
   for (const double albedo : study_albedos()) {
-    targets.push_back(target_at(simulation, albedo, data.g));
+    Target target = target_at(simulation, albedo, data.g);
+    if (target.data.bins.size() < fewest_bins) continue;
+    targets.push_back(std::move(target));
     truth.push_back(methods.at("table")(targets.back()).density);
   }
   std::string rows =
@@ -284,9 +290,11 @@ void write_optics_report(const PathTally& simulation, const TableData& data, con
   write_chart_svg(folder / "fits.svg", chart);
   write_lobe(simulation, data.eta, folder);
   write_profiles(simulation, methods.at("table"), methods.at("table's five exponentials"), data.g, folder);
-  for (const double albedo : {0.5, 0.9, 0.99})
-    write_fit_by_distance(target_at(simulation, albedo, data.g), methods,
-                          folder / fmt::format("fit_by_distance_{}.svg", albedo));
+  for (const double albedo : {0.5, 0.9, 0.99}) {
+    const Target target = target_at(simulation, albedo, data.g);
+    if (target.data.bins.size() >= fewest_bins)
+      write_fit_by_distance(target, methods, folder / fmt::format("fit_by_distance_{}.svg", albedo));
+  }
 }
 
 }  // namespace alabaster
