@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "core/error.h"
@@ -131,8 +132,12 @@ std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request) {
 
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta) {
   ProfileRequest request;
-  request.g = g;
-  request.eta = eta;
+  request.g = std::clamp(g, -0.99, 0.99);
+  request.eta = std::clamp(eta, 1.0, 4.0);
+  if (request.g != g || request.eta != eta)
+    warn(fmt::format(
+        "profiles end at |g| = 0.99 and eta = 4: for g = {}, eta = {} that of g = {}, eta = {} is taken", g,
+        eta, request.g, request.eta));
   return profile_for(request);
 }
 

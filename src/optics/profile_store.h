@@ -50,6 +50,8 @@ class ProfileStore {
 /// The built-in baseline, or a table of the user's cache ($XDG_CACHE_HOME/alabaster, else
 /// ~/.cache/alabaster), baked with progress on standard error when it is not there yet.
 std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request);
+/// The same for a medium of a scene: beyond the range the nearest there is, with a warning. Kept until the
+/// program ends.
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta);
 
 /// The data of the built-in baseline table.

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/progress.h"
 #include "image/image_decode.h"
+#include "optics/profile_store.h"
 #include "scene/json_reader.h"
 #include "study/scene_sets.h"
 #include "texture/texel_array.h"
@@ -21,11 +22,7 @@ namespace alabaster {
 namespace fs = std::filesystem;
 
 const ProfileTable& profile_for(const PlanarScene& scene) {
-  const ProfileTable& baseline = baseline_profile();
-  if (scene.medium.g == baseline.g() && scene.medium.eta == baseline.eta()) return baseline;
-  throw InputError(
-      fmt::format("scene '{}': there is no table for g = {}, eta = {}; the models know g = {}, eta = {}",
-                  scene.name, scene.medium.g, scene.medium.eta, baseline.g(), baseline.eta()));
+  return *profile_for(scene.medium.g, scene.medium.eta);  // the store keeps it
 }
 
 namespace {
