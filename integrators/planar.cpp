@@ -91,6 +91,7 @@ namespace {
 
 // Below this share of distances the table's differences are mostly rounding.
 constexpr double smallest_share = 1e-6;
+constexpr double infinite_contrast = 1e300;
 
 double circumscribed_radius(const PlanarLight& light) {
   return light.shape == PlanarLight::Shape::square ? std::sqrt(2.0) * light.radius : light.radius;
@@ -169,15 +170,21 @@ void PlanarIntegrator::clip_to_light(Strategies& s) const {
   s.offset = glm::length(offset);
   if (s.offset > 0) s.towards_light = offset / s.offset;
   const DistanceTable& table = model_.bssrdf().distances();
-  double smallest = 1;
+  // From afar the profile varies little over the light, and its area alone is sampled more evenly than by two
+  // strategies: measured on points, up to a hundredfold difference between its nearest
+  // and farthest point.
+  const double nearest = std::max(0.0, s.offset - s.reach), farthest = s.offset + s.reach;
+  double smallest = 1, contrast = s.offset < 2 * s.reach ? infinite_contrast : 1;
   for (int c = 0; c < s.channels; ++c) {
     auto& channel = s.channel[static_cast<std::size_t>(c)];
-    const double nearest = std::max(0.0, s.offset - s.reach), farthest = s.offset + s.reach;
+    if (nearest > 0)
+      contrast = std::max(contrast, table.pdf(channel.level, nearest * channel.sigma_t) * farthest /
+                                        (table.pdf(channel.level, farthest * channel.sigma_t) * nearest));
     channel.below = table.cdf(channel.level, nearest * channel.sigma_t);
     channel.inside = table.cdf(channel.level, farthest * channel.sigma_t) - channel.below;
     smallest = std::min(smallest, channel.inside);
   }
-  s.profile_share = smallest < smallest_share ? 0 : 0.75;
+  s.profile_share = smallest < smallest_share || contrast < 100 ? 0 : 0.75;
 }
 
 Vec2 PlanarIntegrator::draw(const Strategies& s, Vec2 u) const {

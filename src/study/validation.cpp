@@ -167,8 +167,10 @@ class ValidationRun {
       progress_.update(fraction_done(), scene.name);
       // Someone who asks for certain models wants those alone.
       const bool sweep = options_.models.empty();
-      result_.scenes.push_back(
-          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed));
+      SceneResult measured =
+          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed);
+      if (cancellation_requested()) break;  // its images are unfinished
+      result_.scenes.push_back(std::move(measured));
       report_row(result_.scenes.back());
     }
     if (options_.models.empty()) measure_kernels_and_footprints();
