@@ -174,7 +174,7 @@ void PlanarIntegrator::clip_to_light(Strategies& s) const {
   // strategies: measured on points, up to a hundredfold difference between its nearest
   // and farthest point.
   const double nearest = std::max(0.0, s.offset - s.reach), farthest = s.offset + s.reach;
-  double smallest = 1, contrast = s.offset < 2 * s.reach ? infinite_contrast : 1;
+  double smallest = 1, contrast = s.offset < 1.3 * s.reach ? infinite_contrast : 1;
   for (int c = 0; c < s.channels; ++c) {
     auto& channel = s.channel[static_cast<std::size_t>(c)];
     if (nearest > 0)
