@@ -2,6 +2,7 @@
 
 #include "optics/fresnel.h"
 #include "optics/profile_store.h"
+#include "texture/material_map.h"
 
 namespace alabaster {
 
@@ -23,6 +24,9 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
   const SceneObject& body = scene.objects[object];
   const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get()};
   model_ = make_bssrdf(model, below, {&placement_});
+  // On one albedo all models are the homogeneous one, which looks nothing up.
+  if (dynamic_cast<const ConstantAlbedo*>(body.albedo.get()) != nullptr)
+    model_ = make_bssrdf("homogeneous", below, {});
   probe_ = std::make_unique<ProbeSampler>(*model_,
                                           ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary)});
 }

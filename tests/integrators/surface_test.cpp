@@ -119,3 +119,15 @@ TEST_CASE("a patch light that covers the plane is the furnace") {
   const Measured m = measure(scene, options, 20000);
   CHECK(std::abs(m.mean - (f + (1 - f) * baseline_profile().reflectance(0.9))) < 4 * m.error);
 }
+
+TEST_CASE("on one albedo composite is the homogeneous model, bit for bit") {
+  Scene scene = plane_scene(medium_material(Rgb(0.9, 0.8, 0.3), Rgb(0.001)), 1);
+  scene.environment = make_constant_environment(Rgb(1));
+  prepare_scene(scene);
+  SurfaceOptions options;
+  options.camera = parallel_camera(Vec3(0), view(20), 1, 0.01);
+  options.model = "composite";
+  const Measured composite = measure(scene, options, 500);
+  options.model = "homogeneous";
+  CHECK(measure(scene, options, 500).mean == composite.mean);
+}
