@@ -111,12 +111,12 @@ TEST_CASE("the order-resolved tally's integers close over all stages") {
 }
 
 TEST_CASE("the analog walk per albedo is the oracle of the order-resolved one (z-test, significance 1e-4)") {
-  const PathTally tally = half_space_tally({{0.3, 1.5}, 2 * photons_per_chunk, 12, false});
+  const PathTally tally = half_space_tally({{0.3, 1.5}, 8 * photons_per_chunk, 12, false});
   const std::vector<double> albedos{0.3, 0.8, 0.97, 0.999};
   for (const double albedo : albedos) {
     AlbedoWalkOptions options;
     options.albedo = albedo;
-    options.photons = 200000;
+    options.photons = 400000;
     options.seed = 31;
     const AlbedoWalkResult analog = walk_at_albedo(options);
     const std::vector<Estimate> expected = analog.radial_energy();
@@ -131,7 +131,7 @@ TEST_CASE("the analog walk per albedo is the oracle of the order-resolved one (z
         b.value += albedo * measured[bin].value;
         b.standard_error += std::pow(albedo * measured[bin].standard_error, 2);
       }
-      if (a.value * 200000 < 50) continue;
+      if (a.value * 400000 < 50) continue;
       ++tested;
       const double z = (a.value - b.value) / std::sqrt(a.standard_error + b.standard_error);
       INFO("albedo " << albedo << " octave " << octave << ": " << a.value << " and " << b.value << ", z "
