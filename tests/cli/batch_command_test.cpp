@@ -24,7 +24,7 @@ TEST_CASE("a batch renders its jobs, with defaults, relative to its file") {
   CHECK(fs::exists(folder / "sub/b.png"));
 }
 
-TEST_CASE("-o sends a batch's outputs elsewhere") {
+TEST_CASE("option -o sends a batch's outputs elsewhere") {
   const ScratchFolder folder;
   write_ball_scene(folder.path());
   const fs::path jobs =
@@ -50,7 +50,7 @@ TEST_CASE("one failing job does not stop the rest, and the exit code tells") {
   CHECK_FALSE(fs::exists(folder / "b.exr"));
 }
 
-TEST_CASE("--resume skips finished outputs, and those only") {
+TEST_CASE("resuming skips finished outputs, and those only") {
   const ScratchFolder folder;
   write_ball_scene(folder.path());
   const auto write_jobs = [&](const char* seed) {

@@ -142,7 +142,7 @@ TEST_CASE("a turned texture turns the image (z-test per pixel, Sidak 1e-3)") {
   }
 }
 
-TEST_CASE("extreme albedos, mean free paths by channel and oblong texels stay finite; black stays black") {
+TEST_CASE("extreme albedos, mean free paths by channel and oblong texels stay finite, black stays black") {
   for (const std::string& model : all_models) {
     PlanarScene scene =
         small_planar_scene(4, [](int x, int) { return x < 2 ? Rgb(0) : Rgb(0.9999, 1, 0.5); });

@@ -110,7 +110,7 @@ TEST_CASE("two that ask at once bake once") {
   set_quiet(false);
 }
 
-TEST_CASE("the baseline needs no cache; impossible media are refused") {
+TEST_CASE("the baseline needs no cache, impossible media are refused") {
   ProfileStore store("/nonexistent/folder", few);
   CHECK(store.get({})->reflectance(0.9) == baseline_profile().reflectance(0.9));
   CHECK(store.bakes() == 0);

@@ -59,7 +59,7 @@ TEST_CASE("a square loads from data URIs and from binary glTF alike") {
   }
 }
 
-TEST_CASE("modes: triangles, strips and fans; points and lines are left out with a remark") {
+TEST_CASE("modes: triangles, strips and fans, points and lines are left out with a remark") {
   // The same hexagon fan of six triangles, area 3 sqrt(3) / 2, in each mode.
   const ScratchFolder folder;
   std::vector<float> ring;
@@ -124,7 +124,7 @@ TEST_CASE("nodes: hierarchy, instances, rotations and mirrors") {
   CHECK(bounding_box(scene.objects[2].mesh).low.z == Approx(7));
 }
 
-TEST_CASE("nodes that the scene does not reach are not shown; without scenes all are") {
+TEST_CASE("nodes that the scene does not reach are not shown, without scenes all are") {
   const ScratchFolder folder;
   TinyGltfFile file;
   file.add_square();

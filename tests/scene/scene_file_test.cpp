@@ -174,7 +174,7 @@ TEST_CASE("materials: precedence of *, name and options") {
   CHECK(scene.materials[0].medium->mean_free_path.r == Approx(0.01 * std::sqrt(3.0)));
 }
 
-TEST_CASE("the default rule passes over metals, blending and transmission; names override it") {
+TEST_CASE("the default rule passes over metals, blending and transmission, names override it") {
   SceneFolder folder;
   auto& material = folder.box_.root["materials"][0];
   const auto reason = [&](const LoadOptions& options = {}) {

@@ -186,7 +186,7 @@ TEST_CASE("what is not covered never shows, not even NaN") {
   CHECK(pyramid.mean().g == Approx(0.45));
 }
 
-TEST_CASE("the finest level is the texture's own reconstruction; widening is continuous") {
+TEST_CASE("the finest level is the texture's own reconstruction, widening is continuous") {
   const TexelArray texels = blocks(37, 2);
   const auto shared = std::make_shared<TexelArray>(texels);
   Rng rng(4);
