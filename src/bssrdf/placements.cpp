@@ -21,6 +21,10 @@ bool needs_sideways(std::span<const KernelTap> taps) {
 }
 
 /// The same map in the frame of the tangent plane whose first axis is the gradient of u: lower triangular.
+/// Up to this share of the distance from an end, within one chart, the end's tangent plane is close enough to
+/// the surface: a Gaussian there is at least as wide as it is far from the end.
+constexpr double tangent_reach = 2.0 / 7 + 1e-9;
+
 Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle) {
   const auto& [u, v] = atlas.gradients(triangle);
   const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
@@ -98,9 +102,17 @@ void ProjectedChordPlacement::place_by_queries(const SurfacePoint& entry, const 
                                                std::span<KernelFootprint> footprints) const {
   const Vec3 chord = exit.position - entry.position;
   const Vec3 side = needs_sideways(taps) ? sideways(entry, exit) : Vec3(0);
+  const bool one_chart =
+      tolerance_ >= 0 && !atlas_.empty() && atlas_.chart(entry.triangle) == atlas_.chart(exit.triangle);
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const KernelTap& tap = taps[k];
     const Vec3 wanted = entry.position + tap.along * chord + tap.across * distance * side;
+    if (one_chart && std::min(tap.along, 1 - tap.along) <= tangent_reach) {
+      const SurfacePoint& end = tap.along > 0.5 ? exit : entry;
+      footprints[k] = around(end, tap.sigma * distance);
+      footprints[k].uv += atlas_.uv_from_surface(end.triangle, wanted - end.position);
+      continue;
+    }
     // Both ends lie on the surface, so it is no farther than the nearer of them, and mostly much closer;
     // float coordinates need a margin.
     const SurfacePoint& end = tap.along > 0.5 ? exit : entry;
