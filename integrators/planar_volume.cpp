@@ -43,8 +43,8 @@ class TargetWeight {
     const double reach = scene.light.radius / mean_free_path;
     centre_ = scene.light.centre / mean_free_path;
     reach_squared_ = reach * reach;
-    // A quarter of diffusion's decay at the mean albedo: following all of it would spend most of the time where
-    // there is least to see.
+    // A quarter of diffusion's decay at the mean albedo: following all of it would spend most of the time
+    // where there is least to see.
     const double albedo = mean_albedo(*scene.albedo).max();
     const double decay = 0.25 * std::sqrt(3 * (1 - albedo) * (1 - medium.g * albedo));
     farthest_ = reach + farthest_corner(scene) / mean_free_path;

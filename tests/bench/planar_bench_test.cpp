@@ -1,7 +1,7 @@
 // Figures of docs/planar_laboratory.md: build/release/tests/test_bench "[planar]". Only ratios are asserted.
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>
