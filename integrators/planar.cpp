@@ -64,37 +64,28 @@ PlanarSampling planar_sampling_from_name(std::string_view name) {
 /// What one exit point makes of the two strategies.
 struct PlanarIntegrator::Strategies {
   Vec2 exit{0};
-  double profile_share = 1;  // probability of drawing by the profile
-  // The disk around the light, as the exit sees it.
-  bool clipped = false;
-  Vec2 towards_light{1, 0};  // unit
-  double offset = 0;         // m, from the exit to its centre
-  double reach = 0;          // m, its radius
-
-  int channels = 3;  // 1: all agree
-  struct Channel {
-    int level = 0;                 // of the distance table
-    double sigma_t = 1;            // 1/m
-    double below = 0, inside = 1;  // share of the distances nearer than the light, and at those of the light
-  };
-  std::array<Channel, 3> channel;
-
-  /// Half the angle under which the circle of this radius around the exit lies within the light's disk.
-  double half_angle(double distance) const {
-    if (!clipped || offset + distance <= reach) return pi;
-    const double cosine = (offset * offset + distance * distance - reach * reach) / (2 * offset * distance);
-    return std::acos(std::clamp(cosine, -1.0, 1.0));
-  }
+  double profile_share = 1;      // probability of drawing by the profile
+  int channels = 3;              // 1: all agree
+  std::array<int, 3> level{};    // of the distance table, by channel
+  LightDiskSampler::View light;  // clipped only
 };
 
 namespace {
 
-// Below this share of distances the table's differences are mostly rounding.
-constexpr double smallest_share = 1e-6;
-constexpr double infinite_contrast = 1e300;
+constexpr double largest_below_one = 0x1.fffffffffffffp-1;
+// Of the samples, by area: they bound the weights where the texture defeats the profile.
+constexpr double area_share_of_clipped = 0.1;
 
 double circumscribed_radius(const PlanarLight& light) {
   return light.shape == PlanarLight::Shape::square ? std::sqrt(2.0) * light.radius : light.radius;
+}
+
+// Half the angle under which the circle of this radius around a point `offset` away from the centre of a disk
+// lies within the disk.
+double half_angle(double distance, double offset, double reach) {
+  if (offset + distance <= reach) return pi;
+  const double cosine = (offset * offset + distance * distance - reach * reach) / (2 * offset * distance);
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
 }  // namespace
@@ -108,6 +99,12 @@ PlanarIntegrator::PlanarIntegrator(const PlanarModel& model, PlanarSampling samp
   outgoing_ =
       scene_.view.radiosity ? diffuse_transmittance(eta) : 1 - fresnel_dielectric(scene_.view.towards.z, eta);
   if (sampling_ == PlanarSampling::mis) tabulate_profile_share();
+  if (sampling_ == PlanarSampling::clipped) {
+    const Rgb sigma_t = model_.bssrdf().medium().sigma_t;
+    const int samplers = sigma_t.is_grey() ? 1 : 3;
+    for (int c = 0; c < samplers; ++c)
+      light_samplers_.emplace_back(model_.bssrdf().distances(), sigma_t[c], light_reach_);
+  }
 }
 
 // Unconfined, the profile is worth choosing as often as it meets the light: its share of the samples is the
@@ -119,17 +116,14 @@ void PlanarIntegrator::tabulate_profile_share() {
   const double sigma_t = scene_.medium.sigma_t().mean();
   const double spacing = light_reach_ / 8;
   for (int i = 0; i < 64; ++i) {
-    Strategies s;
-    s.clipped = true;
-    s.offset = i * spacing;
-    s.reach = light_reach_;
-    const double nearest = std::max(0.0, s.offset - s.reach), farthest = s.offset + s.reach;
+    const double offset = i * spacing;
+    const double nearest = std::max(0.0, offset - light_reach_), farthest = offset + light_reach_;
     constexpr int steps = 32;
     double hit = 0;
     for (int k = 0; k < steps; ++k) {
       const auto at = [&](double f) { return nearest + (farthest - nearest) * f / steps; };
       hit += (table.cdf(level, sigma_t * at(k + 1)) - table.cdf(level, sigma_t * at(k))) *
-             s.half_angle(at(k + 0.5)) / pi;
+             half_angle(at(k + 0.5), offset, light_reach_) / pi;
     }
     profile_share_.push_back(std::clamp(hit, 0.0, 0.9));
   }
@@ -148,88 +142,86 @@ PlanarIntegrator::Strategies PlanarIntegrator::strategies(const BssrdfPoint& exi
     s.profile_share = 0;
     return s;
   }
-  const Rgb sigma_t = model_.bssrdf().medium().sigma_t;
   const Rgb typical = model_.bssrdf().typical_albedo(exit);
-  s.channels = typical.is_grey() && sigma_t.is_grey() ? 1 : 3;
-  for (int c = 0; c < s.channels; ++c) {
-    s.channel[static_cast<std::size_t>(c)].level = DistanceTable::level(typical[c]);
-    s.channel[static_cast<std::size_t>(c)].sigma_t = sigma_t[c];
-  }
+  s.channels = typical.is_grey() && model_.bssrdf().medium().sigma_t.is_grey() ? 1 : 3;
+  for (int c = 0; c < s.channels; ++c)
+    s.level[static_cast<std::size_t>(c)] = DistanceTable::level(typical[c]);
   if (sampling_ == PlanarSampling::mis) {
     s.profile_share = profile_share(glm::length(s.exit - scene_.light.centre));
   } else if (sampling_ == PlanarSampling::clipped) {
-    clip_to_light(s);
+    s.light = light_samplers_.front().view(scene_.light.centre - s.exit);
+    s.profile_share = 1 - area_share_of_clipped;
+    for (int c = 0; c < s.channels; ++c)
+      if (light_sampler(c).is_even(s.light, s.level[static_cast<std::size_t>(c)])) s.profile_share = 0;
   }
   return s;
 }
 
-void PlanarIntegrator::clip_to_light(Strategies& s) const {
-  s.clipped = true;
-  s.reach = light_reach_;
-  const Vec2 offset = scene_.light.centre - s.exit;
-  s.offset = glm::length(offset);
-  if (s.offset > 0) s.towards_light = offset / s.offset;
-  const DistanceTable& table = model_.bssrdf().distances();
-  // From afar the profile varies little over the light, and its area alone is sampled more evenly than by two
-  // strategies: measured on points, up to a hundredfold difference between its nearest
-  // and farthest point.
-  const double nearest = std::max(0.0, s.offset - s.reach), farthest = s.offset + s.reach;
-  double smallest = 1, contrast = s.offset < 1.3 * s.reach ? infinite_contrast : 1;
-  for (int c = 0; c < s.channels; ++c) {
-    auto& channel = s.channel[static_cast<std::size_t>(c)];
-    if (nearest > 0)
-      contrast = std::max(contrast, table.pdf(channel.level, nearest * channel.sigma_t) * farthest /
-                                        (table.pdf(channel.level, farthest * channel.sigma_t) * nearest));
-    channel.below = table.cdf(channel.level, nearest * channel.sigma_t);
-    channel.inside = table.cdf(channel.level, farthest * channel.sigma_t) - channel.below;
-    smallest = std::min(smallest, channel.inside);
-  }
-  s.profile_share = smallest < smallest_share || contrast < 100 ? 0 : 0.75;
-}
-
-Vec2 PlanarIntegrator::draw(const Strategies& s, Vec2 u) const {
+/// Draws an entry point and its density per m^2; nothing where it misses the light.
+std::optional<PlanarIntegrator::Entry> PlanarIntegrator::draw(const Strategies& s, Vec2 u) const {
   // One pair of numbers decides everything, each decision passing on what is left of it: the samples stay
   // stratified.
   if (u.x >= s.profile_share) {
-    return scene_.light.sample({(u.x - s.profile_share) / (1 - s.profile_share), u.y});
+    const Vec2 p = scene_.light.sample({(u.x - s.profile_share) / (1 - s.profile_share), u.y});
+    return with_pdf(s, p);
   }
-  u.x /= s.profile_share;
+  u.x = std::min(u.x / s.profile_share, largest_below_one);
   int c = 0;
   if (s.channels > 1) {
     c = std::min(static_cast<int>(u.x * s.channels), s.channels - 1);
-    u.x = u.x * s.channels - c;
+    u.x = std::min(u.x * s.channels - c, largest_below_one);
   }
-  const auto& channel = s.channel[static_cast<std::size_t>(c)];
-  const double position = channel.below + std::min(u.x, 0x1.fffffffffffffp-1) * channel.inside;
-  const double distance = model_.bssrdf().distances().sample(channel.level, position) / channel.sigma_t;
-  const double angle = s.half_angle(distance) * (2 * u.y - 1);
-  const Vec2 side(-s.towards_light.y, s.towards_light.x);
-  return s.exit + distance * (std::cos(angle) * s.towards_light + std::sin(angle) * side);
+  const int level = s.level[static_cast<std::size_t>(c)];
+  if (sampling_ == PlanarSampling::clipped) {
+    const auto place = light_sampler(c).sample(s.light, level, u);
+    if (!place) return std::nullopt;
+    return with_pdf(s, s.exit + light_sampler(c).displacement(s.light, *place), *place);
+  }
+  const double sigma_t = model_.bssrdf().medium().sigma_t[c];
+  const double distance = model_.bssrdf().distances().sample(level, u.x) / sigma_t,
+               angle = pi * (2 * u.y - 1);
+  return with_pdf(s, s.exit + distance * Vec2(std::cos(angle), std::sin(angle)));
 }
 
-/// Per m^2, at a point within the light.
-double PlanarIntegrator::pdf(const Strategies& s, double distance) const {
-  double result = 0;
-  if (s.profile_share < 1) result += (1 - s.profile_share) / scene_.light.area();
-  if (s.profile_share > 0) {
-    double by_distance = 0;
-    for (int c = 0; c < s.channels; ++c) {
-      const auto& channel = s.channel[static_cast<std::size_t>(c)];
-      by_distance += channel.sigma_t / channel.inside *
-                     model_.bssrdf().distances().pdf(channel.level, distance * channel.sigma_t);
-    }
-    result += s.profile_share * by_distance / (s.channels * 2 * s.half_angle(distance) * distance);
+std::optional<PlanarIntegrator::Entry> PlanarIntegrator::with_pdf(const Strategies& s, Vec2 entry) const {
+  if (sampling_ == PlanarSampling::clipped && s.profile_share > 0) {
+    const auto place = light_samplers_.front().place(s.light, entry - s.exit);
+    if (!place) return std::nullopt;
+    return with_pdf(s, entry, *place);
   }
-  return result;
+  const double distance = glm::distance(entry, s.exit);
+  if (!scene_.light.contains(entry) || !(distance > 0)) return std::nullopt;
+  double by_profile = 0;
+  if (s.profile_share > 0) {
+    const Rgb sigma_t = model_.bssrdf().medium().sigma_t;
+    for (int c = 0; c < s.channels; ++c)
+      by_profile += sigma_t[c] * model_.bssrdf().distances().pdf(s.level[static_cast<std::size_t>(c)],
+                                                                 sigma_t[c] * distance);
+    by_profile /= s.channels * 2 * pi * distance;
+  }
+  return Entry{entry, mixture(s, by_profile)};
+}
+
+std::optional<PlanarIntegrator::Entry> PlanarIntegrator::with_pdf(
+    const Strategies& s, Vec2 entry, const LightDiskSampler::Place& place) const {
+  if (!scene_.light.contains(entry)) return std::nullopt;
+  double by_profile = 0;
+  for (int c = 0; c < s.channels; ++c)
+    by_profile += light_sampler(c).pdf(s.light, s.level[static_cast<std::size_t>(c)], place);
+  return Entry{entry, mixture(s, by_profile / s.channels)};
+}
+
+double PlanarIntegrator::mixture(const Strategies& s, double by_profile) const {
+  const double by_area = s.profile_share < 1 ? (1 - s.profile_share) / scene_.light.area() : 0;
+  return by_area + s.profile_share * by_profile;
 }
 
 Rgb PlanarIntegrator::radiance(const BssrdfPoint& exit, const Sampler& sampler) const {
   const Strategies s = strategies(exit);
-  const Vec2 entry = draw(s, sampler.get_2d(Dimension::entry_radius));
-  const double distance = glm::length(entry - s.exit);
-  if (!scene_.light.contains(entry) || !(distance > 0)) return {};
-  const Rgb s_v = model_.bssrdf().evaluate(model_.point(entry), exit);
-  return scene_.light.radiance * s_v * (outgoing_ / pdf(s, distance));
+  const auto entry = draw(s, sampler.get_2d(Dimension::entry_radius));
+  if (!entry) return {};
+  const Rgb s_v = model_.bssrdf().evaluate(model_.point(entry->point), exit);
+  return scene_.light.radiance * s_v * (outgoing_ / entry->pdf);
 }
 
 PixelSample PlanarIntegrator::sample(int x, int y, const Sampler& sampler) const {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include "bssrdf/bssrdf.h"
 #include "bssrdf/placements.h"
 #include "integrators/integrator.h"
+#include "integrators/light_disk_sampler.h"
 #include "integrators/planar_scene.h"
 #include "texture/gaussian_pyramid.h"
 
@@ -51,7 +54,7 @@ enum class PlanarSampling {
   uniform,  // over the light's area: what [EK17] does
   profile,  // a distance from the profile at the exit, any angle; misses the light at will
   mis,      // each of the two by chance, weighted by the balance heuristic
-  clipped,  // as mis, but the profile confined to the distances and angles at which the light lies
+  clipped,  // as mis, but the profile confined to the light (light_disk_sampler.h)
 };
 /// Parses the names above; throws InputError.
 PlanarSampling planar_sampling_from_name(std::string_view name);
@@ -73,10 +76,18 @@ class PlanarIntegrator final : public Integrator {
 
  private:
   struct Strategies;
+  struct Entry {
+    Vec2 point{0};
+    double pdf = 0;  // per m^2
+  };
   Strategies strategies(const BssrdfPoint& exit) const;
-  void clip_to_light(Strategies& s) const;
-  Vec2 draw(const Strategies& s, Vec2 u) const;
-  double pdf(const Strategies& s, double distance) const;
+  std::optional<Entry> draw(const Strategies& s, Vec2 u) const;
+  std::optional<Entry> with_pdf(const Strategies& s, Vec2 entry) const;
+  std::optional<Entry> with_pdf(const Strategies& s, Vec2 entry, const LightDiskSampler::Place& place) const;
+  double mixture(const Strategies& s, double by_profile) const;
+  const LightDiskSampler& light_sampler(int channel) const {
+    return light_samplers_[light_samplers_.size() == 1 ? 0 : static_cast<std::size_t>(channel)];
+  }
   double profile_share(double offset) const;
   void tabulate_profile_share();
 
@@ -85,9 +96,10 @@ class PlanarIntegrator final : public Integrator {
   PlanarSampling sampling_;
   double light_reach_;  // m, radius of the disk around the light
   std::vector<double>
-      profile_share_;  // by the exit's distance from the light's centre, light_reach_ / 8 apart
-  double outgoing_;    // T(cos_o), or c for radiosity / pi: what E / pi c times the integral of S_V is
-                       // multiplied by
+      profile_share_;  // mis: by the exit's distance from the light's centre, light_reach_ / 8 apart
+  std::vector<LightDiskSampler> light_samplers_;  // clipped: one, or one per channel
+  double outgoing_;  // T(cos_o), or c for radiosity / pi: what E / pi c times the integral of S_V is
+                     // multiplied by
 };
 
 }  // namespace alabaster

@@ -26,7 +26,6 @@ double p_value(const Environment& environment, SphereChiSquare& test) {
 
 void check_consistency(const Environment& environment, uint64_t seed) {
   Rng rng(seed);
-  Rgb sum;
   const int n = 20000;
   RunningMoments mean;
   for (int i = 0; i < n; ++i) {
