@@ -14,16 +14,24 @@ std::shared_ptr<const ProfileTable> profile_of(const SceneObject& body, const Me
   return profile_for(medium.g, medium.eta);
 }
 
+PlacementBody placement_body(const Scene& scene, uint32_t object) {
+  const SceneObject& body = scene.objects[object];
+  PlacementBody result{&body.mesh, &body.atlas, &scene.rays, object};
+  if (body.albedo) result.by_position_from = body.albedo->by_position_from();
+  return result;
+}
+
 }  // namespace
 
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
-                                 std::vector<uint8_t> boundary, const std::string& model)
+                                 std::vector<uint8_t> boundary, const std::string& model,
+                                 const std::string& placement)
     : profile_(profile_of(scene.objects[object], medium)),
       lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
-      placement_(scene.objects[object].mesh, scene.objects[object].atlas, scene.rays, object) {
+      placement_(make_placement(placement, placement_body(scene, object))) {
   const SceneObject& body = scene.objects[object];
   const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get()};
-  model_ = make_bssrdf(model, below, {&placement_});
+  model_ = make_bssrdf(model, below, {placement_.get()});
   // On one albedo all models are the homogeneous one, which looks nothing up.
   if (dynamic_cast<const ConstantAlbedo*>(body.albedo.get()) != nullptr)
     model_ = make_bssrdf("homogeneous", below, {});

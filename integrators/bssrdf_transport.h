@@ -15,9 +15,10 @@ namespace alabaster {
 class BssrdfTransport final : public SubsurfaceTransport {
  public:
   /// `boundary` has one flag per material index: whether the medium lies below its triangles. Throws
-  /// InputError for a model that make_bssrdf() does not know. The scene outlives the transport.
+  /// InputError for a model that make_bssrdf() or a placement that make_placement() does not know. The scene
+  /// outlives the transport.
   BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
-                  const std::string& model);
+                  const std::string& model, const std::string& placement = std::string(default_placement));
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
@@ -25,7 +26,7 @@ class BssrdfTransport final : public SubsurfaceTransport {
  private:
   std::shared_ptr<const ProfileTable> profile_;
   double lobe_;  // 1 / (pi c): what leaves is spread as T(cos_o) / (pi c)
-  ProjectedChordPlacement placement_;
+  std::unique_ptr<KernelPlacement> placement_;
   std::unique_ptr<Bssrdf> model_;
   std::unique_ptr<ProbeSampler> probe_;
 };

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
+#include "core/error.h"
 #include "core/frame.h"
 
 namespace alabaster {
@@ -20,11 +23,7 @@ bool needs_sideways(std::span<const KernelTap> taps) {
   return std::any_of(taps.begin(), taps.end(), [](const KernelTap& tap) { return tap.across != 0; });
 }
 
-/// The same map in the frame of the tangent plane whose first axis is the gradient of u: lower triangular.
-/// Up to this share of the distance from an end, within one chart, the end's tangent plane is close enough to
-/// the surface: a Gaussian there is at least as wide as it is far from the end.
-constexpr double tangent_reach = 2.0 / 7 + 1e-9;
-
+/// Metres to UV in the frame of the tangent plane whose first axis is the gradient of u: lower triangular.
 Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle) {
   const auto& [u, v] = atlas.gradients(triangle);
   const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
@@ -32,6 +31,35 @@ Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle) {
   const double along = std::sqrt(uu);
   return {along, uv / along, 0, std::sqrt(std::max(vv - uv * uv / uu, 0.0))};
 }
+
+/// The point a footprint lies on, on the mesh itself.
+KernelFootprint footprint_at(const PlacementBody& body, const SurfacePoint& point, double sigma) {
+  const Mat2 uv_from_surface = body.atlas->empty() ? Mat2(0.0) : jacobian(*body.atlas, point.triangle);
+  return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface, point.position};
+}
+
+/// The point of the surface closest to `wanted`, which is not much farther from it than `end`.
+SurfacePoint on_surface(const PlacementBody& body, const Vec3& wanted, const SurfacePoint& end) {
+  // Mostly much closer; float coordinates need a margin.
+  const double margin = 1e-5 * glm::length(wanted), bound = glm::distance(wanted, end.position);
+  auto closest = body.rays->closest_point(body.object, wanted, 0.2 * bound + margin);
+  if (!closest) closest = body.rays->closest_point(body.object, wanted, 1.001 * bound + margin);
+  return closest ? body.mesh->surface_point(closest->triangle, closest->barycentric) : end;
+}
+
+/// Barycentric coordinates of a point in the plane of a triangle, outside it as well.
+Vec2 plane_barycentric(const TriangleMesh& mesh, uint32_t triangle, const Vec3& p) {
+  const Index3& c = mesh.corners[triangle];
+  const Vec3 a = mesh.positions[c[0]], ab = mesh.positions[c[1]] - a, ac = mesh.positions[c[2]] - a,
+             ap = p - a;
+  const double bb = glm::dot(ab, ab), bc = glm::dot(ab, ac), cc = glm::dot(ac, ac);
+  const double pb = glm::dot(ap, ab), pc = glm::dot(ap, ac), determinant = bb * cc - bc * bc;
+  if (!(determinant > 0)) return Vec2(1.0 / 3);
+  return Vec2(cc * pb - bc * pc, bb * pc - bc * pb) / determinant;
+}
+
+/// Taps at most this many deviations from the nearer end may lie in its tangent plane.
+constexpr double tangent_reach = 1.05;
 
 }  // namespace
 
@@ -54,80 +82,153 @@ KernelFootprint PlanarPlacement::around(const SurfacePoint& point, double sigma)
   return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface_};
 }
 
-ProjectedChordPlacement::ProjectedChordPlacement(const TriangleMesh& mesh, const UvAtlas& atlas,
-                                                 const RayScene& rays, uint32_t object, double tolerance)
-    : mesh_(mesh), atlas_(atlas), rays_(rays), object_(object), tolerance_(tolerance) {}
+/// How UV runs between two points of one chart: straight, and what the end slopes bend it by.
+struct ChordPlacement::UvPair {
+  double trust = 0;
+  Vec2 difference{0}, excess_at_entry{0}, excess_at_exit{0};
+};
 
-bool ProjectedChordPlacement::interpolates(const SurfacePoint& entry, const SurfacePoint& exit) const {
-  if (tolerance_ < 0 || atlas_.empty() || atlas_.chart(entry.triangle) != atlas_.chart(exit.triangle))
-    return false;
+ChordPlacement::UvPair ChordPlacement::uv_pair(const SurfacePoint& entry, const SurfacePoint& exit) const {
+  UvPair pair;
+  const UvAtlas& atlas = *body_.atlas;
+  if (atlas.empty() || atlas.chart(entry.triangle) != atlas.chart(exit.triangle)) return pair;
   const Vec3 chord = exit.position - entry.position;
-  const Vec2 difference = exit.uv - entry.uv;
-  const Vec2 from_entry = atlas_.uv_from_surface(entry.triangle, chord);
-  const Vec2 from_exit = atlas_.uv_from_surface(exit.triangle, chord);
-  const double allowed = tolerance_ * tolerance_ * glm::dot(difference, difference);
-  const Vec2 entry_error = from_entry - difference, exit_error = from_exit - difference;
-  return glm::dot(entry_error, entry_error) <= allowed && glm::dot(exit_error, exit_error) <= allowed;
+  pair.difference = exit.uv - entry.uv;
+  pair.excess_at_entry = atlas.uv_from_surface(entry.triangle, chord) - pair.difference;
+  pair.excess_at_exit = atlas.uv_from_surface(exit.triangle, chord) - pair.difference;
+  const double error = std::max(glm::dot(pair.excess_at_entry, pair.excess_at_entry),
+                                glm::dot(pair.excess_at_exit, pair.excess_at_exit));
+  const double length = glm::dot(pair.difference, pair.difference);
+  constexpr double full = full_trust * full_trust, none = no_trust * no_trust;
+  if (error <= full * length)
+    pair.trust = 1;
+  else if (error < none * length)
+    pair.trust = (none - error / length) / (none - full);
+  return pair;
+}
+
+double ChordPlacement::trust(const SurfacePoint& entry, const SurfacePoint& exit) const {
+  return uv_pair(entry, exit).trust;
+}
+
+Vec3 ChordPlacement::Way::point(const KernelTap& tap) const {
+  const double t = tap.along, s = 1 - t;
+  return entry.position + t * chord + (t * s) * (s * bend_at_entry - t * bend_at_exit) +
+         (tap.across * distance) * side;
+}
+
+void ChordPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+                           std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const {
+  Way way{entry, exit, distance, exit.position - entry.position};
+  if (needs_sideways(taps)) way.side = sideways(entry, exit);
+  place_along(way, taps, footprints);
+}
+
+void ChordPlacement::place_along(const Way& way, std::span<const KernelTap> taps,
+                                 std::span<KernelFootprint> footprints) const {
+  std::optional<UvPair> pair;
+  for (std::size_t k = 0; k < taps.size(); ++k) {
+    KernelFootprint& footprint = footprints[k];
+    footprint.position = way.point(taps[k]);
+    footprint.sigma = taps[k].sigma * way.distance;
+    footprint.triangle = (taps[k].along > 0.5 ? way.exit : way.entry).triangle;
+    if (footprint.sigma >= body_.by_position_from) continue;
+    if (!pair) pair = uv_pair(way.entry, way.exit);
+    place_in_uv(way, *pair, taps[k], footprint);
+  }
+}
+
+void ChordPlacement::place_in_uv(const Way& way, const UvPair& pair, const KernelTap& tap,
+                                 KernelFootprint& f) const {
+  const UvAtlas& atlas = *body_.atlas;
+  const double t = tap.along, s = 1 - t;
+  const SurfacePoint& end = t > 0.5 ? way.exit : way.entry;
+  const bool near_end = std::min(t, s) <= tangent_reach * tap.sigma;
+  if (pair.trust == 0 && !near_end) {
+    f = footprint_at(body_, on_surface(body_, f.position, end), f.sigma);
+    return;
+  }
+  const Vec3 offset = f.position - end.position;
+  f.barycentric = end.barycentric;
+  if (atlas.empty() || body_.mesh->uv_sets.size() > 1)
+    f.barycentric = plane_barycentric(*body_.mesh, end.triangle, f.position);
+  if (atlas.empty()) return;
+  f.uv_from_surface = jacobian(atlas, end.triangle);
+  Vec2 cubic{0}, tangent{0};
+  if (pair.trust > 0) {
+    cubic =
+        way.entry.uv + t * pair.difference + (t * s) * (s * pair.excess_at_entry - t * pair.excess_at_exit);
+    if (tap.across != 0) cubic += tap.across * way.distance * atlas.uv_from_surface(end.triangle, way.side);
+  }
+  if (pair.trust < 1) tangent = end.uv + atlas.uv_from_surface(end.triangle, offset);
+  const double trust = near_end ? pair.trust : 1;
+  f.uv = trust == 1 ? cubic : tangent + trust * (cubic - tangent);
+}
+
+KernelFootprint ChordPlacement::around(const SurfacePoint& point, double sigma) const {
+  return footprint_at(body_, point, sigma);
+}
+
+void ArcPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+                         std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const {
+  Way way{entry, exit, distance, exit.position - entry.position};
+  const double at_entry = glm::dot(entry.shading_normal, way.chord),
+               at_exit = glm::dot(exit.shading_normal, way.chord);
+  way.bend_at_entry = -at_entry * entry.shading_normal;
+  way.bend_at_exit = -at_exit * exit.shading_normal;
+  const double angle = 0.5 * (std::asin(std::min(std::abs(at_entry) / distance, 1.0)) +
+                              std::asin(std::min(std::abs(at_exit) / distance, 1.0)));
+  if (angle > 1e-4) way.distance = distance * angle / std::sin(angle);
+  if (needs_sideways(taps)) way.side = sideways(entry, exit);
+  place_along(way, taps, footprints);
 }
 
 void ProjectedChordPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
                                     std::span<const KernelTap> taps,
                                     std::span<KernelFootprint> footprints) const {
-  if (!interpolates(entry, exit)) return place_by_queries(entry, exit, distance, taps, footprints);
-  const Mat2 at_entry = jacobian(atlas_, entry.triangle);
-  const Mat2 at_exit = exit.triangle == entry.triangle ? at_entry : jacobian(atlas_, exit.triangle);
-  const Vec3 chord = exit.position - entry.position;
-  const Vec2 difference = exit.uv - entry.uv;
-  const Vec2 excess_at_entry = atlas_.uv_from_surface(entry.triangle, chord) - difference;
-  const Vec2 excess_at_exit = atlas_.uv_from_surface(exit.triangle, chord) - difference;
-  const Vec3 side = needs_sideways(taps) ? sideways(entry, exit) : Vec3(0);
-  for (std::size_t k = 0; k < taps.size(); ++k) {
-    const double t = taps[k].along, s = 1 - t;
-    const bool nearer_exit = t > 0.5;
-    const SurfacePoint& end = nearer_exit ? exit : entry;
-    KernelFootprint& footprint = footprints[k];
-    // Hermite's cubic as the straight line and what the end slopes bend it by.
-    footprint.uv = entry.uv + t * difference + (t * s) * (s * excess_at_entry - t * excess_at_exit);
-    if (taps[k].across != 0)
-      footprint.uv += taps[k].across * distance * atlas_.uv_from_surface(end.triangle, side);
-    footprint.barycentric = end.barycentric;
-    footprint.triangle = end.triangle;
-    footprint.sigma = taps[k].sigma * distance;
-    footprint.uv_from_surface = nearer_exit ? at_exit : at_entry;
-  }
-}
-
-void ProjectedChordPlacement::place_by_queries(const SurfacePoint& entry, const SurfacePoint& exit,
-                                               double distance, std::span<const KernelTap> taps,
-                                               std::span<KernelFootprint> footprints) const {
   const Vec3 chord = exit.position - entry.position;
   const Vec3 side = needs_sideways(taps) ? sideways(entry, exit) : Vec3(0);
-  const bool one_chart =
-      tolerance_ >= 0 && !atlas_.empty() && atlas_.chart(entry.triangle) == atlas_.chart(exit.triangle);
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const KernelTap& tap = taps[k];
     const Vec3 wanted = entry.position + tap.along * chord + tap.across * distance * side;
-    if (one_chart && std::min(tap.along, 1 - tap.along) <= tangent_reach) {
-      const SurfacePoint& end = tap.along > 0.5 ? exit : entry;
-      footprints[k] = around(end, tap.sigma * distance);
-      footprints[k].uv += atlas_.uv_from_surface(end.triangle, wanted - end.position);
-      continue;
-    }
-    // Both ends lie on the surface, so it is no farther than the nearer of them, and mostly much closer;
-    // float coordinates need a margin.
-    const SurfacePoint& end = tap.along > 0.5 ? exit : entry;
-    const double margin = 1e-5 * glm::length(wanted), bound = glm::distance(wanted, end.position);
-    auto closest = rays_.closest_point(object_, wanted, 0.2 * bound + margin);
-    if (!closest) closest = rays_.closest_point(object_, wanted, 1.001 * bound + margin);
-    const uint32_t triangle = closest ? closest->triangle : end.triangle;
-    const Vec2 barycentric = closest ? closest->barycentric : end.barycentric;
-    footprints[k] = around(mesh_.surface_point(triangle, barycentric), tap.sigma * distance);
+    footprints[k] = around(on_surface(body_, wanted, tap.along > 0.5 ? exit : entry), tap.sigma * distance);
   }
 }
 
 KernelFootprint ProjectedChordPlacement::around(const SurfacePoint& point, double sigma) const {
-  const Mat2 uv_from_surface = atlas_.empty() ? Mat2(0.0) : jacobian(atlas_, point.triangle);
-  return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface};
+  return footprint_at(body_, point, sigma);
+}
+
+StraightestPlacement::StraightestPlacement(const PlacementBody& body)
+    : body_(body),
+      otherwise_(body),
+      half_edges_(std::make_unique<HalfEdgeMesh>(*body.mesh)),
+      path_(make_straightest_path(*body.mesh, *half_edges_)) {}
+
+StraightestPlacement::~StraightestPlacement() = default;
+
+void StraightestPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+                                 std::span<const KernelTap> taps,
+                                 std::span<KernelFootprint> footprints) const {
+  const auto length = path_->distance(entry, exit);
+  if (!length || needs_sideways(taps)) return otherwise_.place(entry, exit, distance, taps, footprints);
+  for (std::size_t k = 0; k < taps.size(); ++k) {
+    const auto point = path_->between(entry, exit, taps[k].along);
+    footprints[k] = around(point ? *point : taps[k].along > 0.5 ? exit : entry, taps[k].sigma * *length);
+  }
+}
+
+KernelFootprint StraightestPlacement::around(const SurfacePoint& point, double sigma) const {
+  return footprint_at(body_, point, sigma);
+}
+
+std::unique_ptr<KernelPlacement> make_placement(std::string_view name, const PlacementBody& body) {
+  if (name == "chord") return std::make_unique<ChordPlacement>(body);
+  if (name == "arc") return std::make_unique<ArcPlacement>(body);
+  if (name == "projected-chord") return std::make_unique<ProjectedChordPlacement>(body);
+  if (name == "straightest") return std::make_unique<StraightestPlacement>(body);
+  throw InputError("placement '" + std::string(name) +
+                   "' is not known; use chord, arc, projected-chord or straightest");
 }
 
 }  // namespace alabaster

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <string_view>
 
 #include "bssrdf/kernel_placement.h"
+#include "geometry/geodesic.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
 #include "geometry/uv_atlas.h"
@@ -23,36 +27,97 @@ class PlanarPlacement final : public KernelPlacement {
   Mat2 uv_from_surface_;
 };
 
-/// Points of the chord between entry and exit, carried to the surface. Where both ends lie in one chart whose
-/// metric carries the chord about onto the UV difference: by the cubic through both UVs with the slopes that
-/// the Jacobians give the projected chord there (constant time, exact on a plane). By closest-point queries
-/// elsewhere.
-class ProjectedChordPlacement final : public KernelPlacement {
+/// What a placement on a mesh is made from; all referred to outlives it.
+struct PlacementBody {
+  const TriangleMesh* mesh = nullptr;
+  const UvAtlas* atlas = nullptr;  // of the mesh; may be empty
+  const RayScene* rays = nullptr;
+  uint32_t object = 0;  // the mesh's id in `rays`
+  /// AlbedoField::by_position_from() of the field that reads the footprints.
+  double by_position_from = std::numeric_limits<double>::infinity();
+};
+
+/// Means on the chord itself, as eq. 1 has them; constant time. Wide taps are a place in space and no more.
+/// Narrow ones, which resolve the texture, need a UV: where both ends lie in one chart whose metric carries
+/// the chord about onto the UV difference, by the cubic through both UVs with the slopes that the Jacobians
+/// give the projected chord there (exact on a plane); else in the tangent plane of the nearer end. A tap
+/// farther than its own width from both ends, for which that would not do, is a closest-point query: kernels
+/// that widen with the distance from their end, as eq. 1's, have none.
+class ChordPlacement : public KernelPlacement {
  public:
-  /// How far a Jacobian's image of the chord may be off the UV difference, as a fraction of it, for the cubic
-  /// to be used.
-  static constexpr double default_tolerance = 0.5;
+  /// How far a Jacobian's image of the chord may be off the UV difference, as a fraction of it: the cubic
+  /// alone up to the first, the tangent planes alone from the second.
+  static constexpr double full_trust = 0.4, no_trust = 0.5;
 
-  /// `object` is the mesh's id in `rays`; everything referred to outlives this. A negative tolerance always
-  /// queries.
-  ProjectedChordPlacement(const TriangleMesh& mesh, const UvAtlas& atlas, const RayScene& rays,
-                          uint32_t object, double tolerance = default_tolerance);
-
+  explicit ChordPlacement(const PlacementBody& body) : body_(body) {}
   void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
              std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
   KernelFootprint around(const SurfacePoint& point, double sigma) const override;
 
-  /// Whether place() needs no closest-point query for this pair.
-  bool interpolates(const SurfacePoint& entry, const SurfacePoint& exit) const;
+  /// How much the cubic counts for a pair, 0 to 1.
+  double trust(const SurfacePoint& entry, const SurfacePoint& exit) const;
+
+ protected:
+  /// A pair with its way from entry to exit: the chord and what bends it at either end, as Hermite's cubic
+  /// has it.
+  struct Way {
+    const SurfacePoint &entry, &exit;
+    double distance;  // that deviations are fractions of
+    Vec3 chord, side{0}, bend_at_entry{0}, bend_at_exit{0};
+    Vec3 point(const KernelTap& tap) const;
+  };
+  void place_along(const Way& way, std::span<const KernelTap> taps,
+                   std::span<KernelFootprint> footprints) const;
+  const PlacementBody& body() const { return body_; }
 
  private:
-  void place_by_queries(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
-                        std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const;
-  const TriangleMesh& mesh_;
-  const UvAtlas& atlas_;
-  const RayScene& rays_;
-  uint32_t object_;
-  double tolerance_;
+  struct UvPair;
+  UvPair uv_pair(const SurfacePoint& entry, const SurfacePoint& exit) const;
+  void place_in_uv(const Way& way, const UvPair& pair, const KernelTap& tap, KernelFootprint& f) const;
+  PlacementBody body_;
 };
+
+/// The chord bent into the cubic that leaves both ends along the surface (shading normals), deviations
+/// fractions of the normal-corrected chord's length: constant time, hugs round surfaces.
+class ArcPlacement final : public ChordPlacement {
+ public:
+  using ChordPlacement::ChordPlacement;
+  void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+             std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
+};
+
+/// Points of the chord carried to the surface, each by a closest-point query.
+class ProjectedChordPlacement final : public KernelPlacement {
+ public:
+  explicit ProjectedChordPlacement(const PlacementBody& body) : body_(body) {}
+  void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+             std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+
+ private:
+  PlacementBody body_;
+};
+
+/// Means at fractions of the straightest path over the surface, deviations fractions of its length: tens of
+/// microseconds. The chord's placement where no path arrives.
+class StraightestPlacement final : public KernelPlacement {
+ public:
+  explicit StraightestPlacement(const PlacementBody& body);
+  ~StraightestPlacement() override;
+  void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
+             std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+
+ private:
+  PlacementBody body_;
+  ChordPlacement otherwise_;
+  std::unique_ptr<HalfEdgeMesh> half_edges_;
+  std::unique_ptr<GeodesicPath> path_;
+};
+
+/// chord, arc, projected-chord or straightest. Throws InputError, naming them, for any other name.
+std::unique_ptr<KernelPlacement> make_placement(std::string_view name, const PlacementBody& body);
+
+inline constexpr std::string_view default_placement = "chord";
 
 }  // namespace alabaster

@@ -11,6 +11,7 @@
 
 #include "optics/profile_store.h"
 #include "texture/material_map.h"
+#include "texture/surface_albedo.h"
 #include "texture/vertex_albedo.h"
 
 namespace alabaster {
@@ -94,7 +95,10 @@ class AlbedoBuilder {
   explicit AlbedoBuilder(Scene& scene) : scene_(scene), statistics_(scene.materials.size()) {}
 
   void run() {
-    for (SceneObject& object : scene_.objects) object.albedo = build(object);
+    for (SceneObject& object : scene_.objects) {
+      object.albedo = build(object);
+      if (object.albedo) add_pyramids(object);
+    }
     finish();
   }
 
@@ -184,6 +188,52 @@ class AlbedoBuilder {
                                               inversion(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
     return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);
+  }
+
+  /// Pyramids over space, one per medium, unless one albedo or the texture's own pyramid does it all.
+  void add_pyramids(SceneObject& object) const {
+    const TriangleMesh& mesh = object.mesh;
+    if (dynamic_cast<const ConstantAlbedo*>(object.albedo.get()) != nullptr) return;
+    std::vector<uint32_t> all;
+    for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
+      if (scene_.materials[mesh.materials[t]].medium) all.push_back(t);
+    const bool one_material = std::all_of(
+        all.begin(), all.end(), [&](uint32_t t) { return mesh.materials[t] == mesh.materials[all.front()]; });
+    if (one_material && is_affine(mesh, object.atlas, all)) return;
+    std::vector<std::shared_ptr<const SurfacePyramid>> pyramids(scene_.materials.size());
+    for (std::size_t m = 0; m < pyramids.size(); ++m) {
+      if (pyramids[m] || !scene_.materials[m].medium) continue;
+      std::vector<uint32_t> triangles;
+      for (const uint32_t t : all)
+        if (scene_.materials[mesh.materials[t]].medium == scene_.materials[m].medium) triangles.push_back(t);
+      if (triangles.empty()) continue;
+      const auto pyramid = std::make_shared<const SurfacePyramid>(mesh, triangles, *object.albedo,
+                                                                  finest_sigma(object, triangles));
+      for (const uint32_t t : triangles) pyramids[mesh.materials[t]] = pyramid;
+    }
+    object.albedo = std::make_unique<SurfaceAlbedo>(mesh, std::move(object.albedo), std::move(pyramids));
+  }
+
+  /// What the finest of the materials' textures can show, within the memory they take.
+  double finest_sigma(const SceneObject& object, const std::vector<uint32_t>& triangles) const {
+    const TriangleMesh& mesh = object.mesh;
+    std::map<uint16_t, std::vector<uint32_t>> of_material;
+    for (const uint32_t t : triangles) of_material[mesh.materials[t]].push_back(t);
+    double finest = std::numeric_limits<double>::infinity();
+    std::size_t texels = 0;
+    for (const auto& [m, list] : of_material) {
+      const AlbedoSource& source = scene_.materials[m].albedo;
+      double size = 0.5 * std::sqrt(surface_area(mesh) / static_cast<double>(mesh.triangle_count()));
+      if (source.texture && !mesh.uv_sets.empty()) {
+        const TextureMapping& mapping = source.texture->mapping();
+        const int width = source.texture->texels().width, height = source.texture->texels().height;
+        const UvAtlas other = mapping.uv_set == 0 ? UvAtlas() : UvAtlas(mesh, mapping.uv_set);
+        size = texel_size(mesh, mapping.uv_set == 0 ? object.atlas : other, list, mapping, width, height);
+        texels += source.texture->texels().texels.size();
+      }
+      finest = std::min(finest, size);
+    }
+    return finest_pyramid_sigma(mesh, triangles, finest, texels);
   }
 
   void multiply_vertex_colours(const SceneObject& object, const Material& material,

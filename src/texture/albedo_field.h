@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "core/rgb.h"
 #include "core/vec.h"
 #include "geometry/surface_point.h"
@@ -13,7 +15,8 @@ struct KernelFootprint {
   uint32_t triangle = 0;  // that holds the mean
   double sigma = 0;       // standard deviation on the surface, m
   Mat2 uv_from_surface{
-      0.0};  // metres in the tangent plane -> UV; the Gaussian's covariance in UV is sigma^2 J J^T
+      0.0};          // metres in the tangent plane -> UV; the Gaussian's covariance in UV is sigma^2 J J^T
+  Vec3 position{0};  // of the mean in space, m: on the surface or within about sigma of it
 };
 
 /// The single-scattering albedo over one object's surface: the one function that gives the albedo of a
@@ -25,6 +28,9 @@ class AlbedoField {
   virtual Rgb at(const SurfacePoint& point) const = 0;
   /// alpha averaged by a Gaussian on the surface. One pyramid lookup.
   virtual Rgb filtered(const KernelFootprint& footprint) const = 0;
+  /// Footprints of at least this deviation, m, are answered from `position`, `sigma` and `triangle` (for its
+  /// material) alone: whoever places them need not know the UV there.
+  virtual double by_position_from() const { return std::numeric_limits<double>::infinity(); }
   /// The largest alpha anywhere, per channel: bounds for sampling.
   virtual Rgb max() const = 0;
 };

@@ -180,7 +180,9 @@ Rgb VertexAlbedo::level_value(std::size_t level, uint32_t triangle, Vec2 b) cons
 
 Rgb VertexAlbedo::filtered(const KernelFootprint& footprint) const {
   const uint32_t triangle = footprint.triangle;
-  const Vec2 b = footprint.barycentric;
+  // Narrow Gaussians may lie in the triangle's plane beside it.
+  Vec2 b = glm::max(footprint.barycentric, 0.0);
+  b /= std::max(b.x + b.y, 1.0);
   if (levels_.empty() || !(footprint.sigma > 0)) return at(triangle, b);
   const double ratio = footprint.sigma / finest_, last = static_cast<double>(levels_.size() - 1);
   if (ratio < 1) {

@@ -15,21 +15,22 @@
 
 /// A mesh with everything that models and entry sampling need. Lengths in metres.
 struct Body {
-  explicit Body(alabaster::TriangleMesh given,
-                double tolerance = alabaster::ProjectedChordPlacement::default_tolerance)
-      : mesh(std::move(given)), atlas(mesh), placement(mesh, atlas, rays, 0, tolerance) {
+  explicit Body(alabaster::TriangleMesh given)
+      : mesh(std::move(given)), atlas(mesh), placement(parts()), projected(parts()) {
     rays.add(mesh);
     rays.commit();
   }
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
+  alabaster::PlacementBody parts() const { return {&mesh, &atlas, &rays, 0}; }
   alabaster::ProbeTarget target() const { return {&rays, &mesh, 0, {}}; }
 
   alabaster::TriangleMesh mesh;
   alabaster::UvAtlas atlas;
   alabaster::RayScene rays;
-  alabaster::ProjectedChordPlacement placement;
+  alabaster::ChordPlacement placement;
+  alabaster::ProjectedChordPlacement projected;  // always by queries
 };
 
 /// Points uniform over the mesh.

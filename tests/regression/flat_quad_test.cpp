@@ -11,6 +11,7 @@
 #include "study/scene_recipe.h"
 #include "support/planar_scenes.h"
 #include "support/z_test.h"
+#include "texture/material_map.h"
 
 using namespace alabaster;
 
@@ -67,7 +68,8 @@ struct QuadScene {
 TEST_CASE("for the same pairs, a quad in space has the plane's S_V") {
   const QuadScene quad;
   const SceneObject& object = quad.scene.objects[0];
-  const ProjectedChordPlacement placement(object.mesh, object.atlas, quad.scene.rays, 0);
+  const ChordPlacement placement({&object.mesh, &object.atlas, &quad.scene.rays, 0});
+  CHECK(dynamic_cast<const TextureAlbedo*>(object.albedo.get()) != nullptr);  // its own pyramid is exact
   BssrdfOptions options;
   options.placement = &placement;
   const double area = quad.place.scale * quad.place.scale;
