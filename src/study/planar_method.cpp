@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "integrators/planar_volume.h"
 #include "integrators/render.h"
+#include "study/image_errors.h"
 
 namespace alabaster {
 
@@ -78,7 +80,7 @@ TimedImage render_planar(const PlanarScene& scene, const PlanarMethod& method, c
   return {result.film.develop(), result.seconds, result.cpu_seconds, result.samples};
 }
 
-TimedImage render_planar_reference(const PlanarScene& scene, double noise, uint64_t max_paths,
+TimedImage render_planar_reference(const PlanarScene& scene, double noise, double known, uint64_t max_paths,
                                    uint64_t seed) {
   const double start = wall_seconds();
   PlanarVolumeOptions options;
@@ -86,7 +88,13 @@ TimedImage render_planar_reference(const PlanarScene& scene, double noise, uint6
   if (scene.light.shape == PlanarLight::Shape::plane) options.estimator = PlanarEstimator::from_camera;
   PlanarVolume volume(scene, options);
   run_to_noise(volume, noise, max_paths);
-  return {volume.develop(), wall_seconds() - start, volume.cpu_seconds(), volume.paths()};
+  Image image = volume.develop();
+  while (known > 0 && image_errors(image, image).kept < known && volume.paths() < max_paths &&
+         !cancellation_requested()) {
+    volume.run(std::min(volume.paths() / 2, max_paths - volume.paths()));
+    image = volume.develop();
+  }
+  return {std::move(image), wall_seconds() - start, volume.cpu_seconds(), volume.paths()};
 }
 
 }  // namespace alabaster

@@ -31,7 +31,7 @@ ValidationBudget budget(Quality quality) {
     b.reference_noise = 0.004;
     b.floor_noise = 0.006;
     b.max_paths = 10'000'000'000;
-    b.spp = 1024;
+    b.spp = 512;
     b.sweep_spp = 256;
     b.footprint_paths = 4'000'000;
     b.map_paths = 40'000'000;
@@ -62,7 +62,7 @@ SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMeth
                           uint64_t seed) {
   SceneResult result;
   result.scene = scene;
-  result.reference = render_planar_reference(scene, budget.reference_noise, budget.max_paths, seed);
+  result.reference = render_planar_reference(scene, budget.reference_noise, budget.reference_known, budget.max_paths, seed);
   const Image& truth = result.reference.image;
   for (const PlanarMethod& method : methods)
     result.methods.push_back(measure(scene, method, profile, truth, budget.spp, seed + 1));
@@ -72,7 +72,7 @@ SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMeth
                                      truth, budget.sweep_spp, seed + 2));
   result.constant_albedo = mean_albedo(*scene.albedo);
   const PlanarScene constant = with_constant_albedo(scene, result.constant_albedo);
-  const TimedImage floor = render_planar_reference(constant, budget.floor_noise, budget.max_paths, seed + 3);
+  const TimedImage floor = render_planar_reference(constant, budget.floor_noise, 0, budget.max_paths, seed + 3);
   result.floor =
       measure(constant, parse_planar_method("homogeneous"), profile, floor.image, budget.spp, seed + 4);
   return result;
@@ -92,7 +92,7 @@ KernelMap measure_kernel(const PlanarScene& scene, Vec2 exit, const std::vector<
   lit.light.radius = 0.5 * scene.view.size.x / scene.view.width;
   lit.light.radiance = Rgb(1 / (diffuse_transmittance(scene.medium.eta) * lit.light.area()));
   lit.view.radiosity = true;
-  map.maps.emplace_back("reference", render_planar_reference(lit, 1e-3, budget.map_paths, seed).image);
+  map.maps.emplace_back("reference", render_planar_reference(lit, 1e-3, 0, budget.map_paths, seed).image);
   for (const PlanarMethod& method : methods) {
     const PlanarModel model(scene, method.model, profile, method.options);
     const BssrdfPoint at_exit = model.point(map.exit);

@@ -39,32 +39,54 @@ struct alignas(16) Weights {
   float operator[](int i) const { return block[i / 4][i % 4]; }
 };
 
-// Weights of `taps` neighbouring samples around a position `fraction` of a spacing after the middle pair's
-// first, for a kernel of that variance (spacings squared): a bell that falls to exactly 0 at taps / 2, so
-// that the result is continuous when the taps move on by one. Returns their sum.
-template <int taps>
-float bell_weights(float fraction, float variance, Weights& weights) {
-  constexpr float reach = taps / 2;
-  const float t = variance * (8 / (reach * reach));
-  // Subtracting the pedestal narrows the bell; this widens it again (a fit, within 0.1 % for t <= 1.05).
-  const float nominal = variance * (1 + t * t * t * (-0.0867341f + t * (0.1663139f + t * 0.1145253f)));
-  // (1 - x^2 / (67 v))^32 has variance v and is all but Gaussian (excess kurtosis -0.09).
-  const float scale = 1 / (67 * nominal);
-  const auto bell = [scale](auto x) {
-    auto b = 1 - x * x * scale;
+// The bell of a kernel of that variance (spacings squared) that falls to exactly 0 at taps / 2, so that the
+// result is continuous when the taps move on by one.
+struct Bell {
+  float scale, pedestal;
+
+  template <class Float>
+  static Float power(Float x, Float scale) {
+    // (1 - x^2 / (67 v))^32 has variance v and is all but Gaussian (excess kurtosis -0.09).
+    Float b = 1 - x * x * scale;
     b = b > 0 ? b : b - b;
     b *= b, b *= b, b *= b, b *= b;
     return b * b;
-  };
-  const float pedestal = bell(reach);
-  const float nearest = 1 - reach - fraction;  // offset of the first tap
-  Float4 x = Float4{0, 1, 2, 3} + nearest, sum{};
-  for (int i = 0; i < (taps + 3) / 4; ++i, x += 4.0f) {
-    const Float4 above = bell(x) - pedestal;
-    weights.block[i] = above > 0 ? above : Float4{};
-    sum += weights.block[i];
   }
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  template <int taps>
+  static Bell of(float variance) {
+    constexpr float reach = taps / 2;
+    const float t = variance * (8 / (reach * reach));
+    // Subtracting the pedestal narrows the bell; this widens it again (a fit, within 0.1 % for t <= 1.05).
+    const float nominal = variance * (1 + t * t * t * (-0.0867341f + t * (0.1663139f + t * 0.1145253f)));
+    const float scale = 1 / (67 * nominal);
+    return {scale, power(reach, scale)};
+  }
+};
+
+Float8 both(float low, float high) {
+  return Float8{low, low, low, low, high, high, high, high};
+}
+
+// Weights of `taps` neighbouring samples along either axis around a position `fraction` of a spacing after
+// the middle pair's first, not normalised: the two axes share a register.
+template <int taps>
+void bell_weights(const float (&fraction)[2], const float (&variance)[2], Weights (&weights)[2],
+                  float (&sums)[2]) {
+  constexpr float reach = taps / 2;
+  const Bell u = Bell::of<taps>(variance[0]),
+             v = variance[1] == variance[0] ? u : Bell::of<taps>(variance[1]);
+  const Float8 scale = both(u.scale, v.scale), pedestal = both(u.pedestal, v.pedestal);
+  // Offsets of the first taps.
+  Float8 x = Float8{0, 1, 2, 3, 0, 1, 2, 3} + both(1 - reach - fraction[0], 1 - reach - fraction[1]), sum{};
+  for (int i = 0; i < (taps + 3) / 4; ++i, x += 4.0f) {
+    Float8 above = Bell::power(x, scale) - pedestal;
+    above = above > 0 ? above : Float8{};
+    std::memcpy(&weights[0].block[i], &above, sizeof(Float4));
+    std::memcpy(&weights[1].block[i], reinterpret_cast<const char*>(&above) + sizeof(Float4), sizeof(Float4));
+    sum += above;
+  }
+  sums[0] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  sums[1] = (sum[4] + sum[5]) + (sum[6] + sum[7]);
 }
 
 // The finest level's own reconstruction (tent or box) convolved with a tent of variance `blur` <= 1/4, which
@@ -314,10 +336,10 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
     kernel[axis] = static_cast<float>(std::min(total * scale * scale - level.blur[axis], widest_kernel));
   }
   Weights weights[2];
-  float scale = 1;  // of the result, for weights that are not normalised
+  float scale = 1, sums[2];  // of the result, for weights that are not normalised
   const auto gather_bell = [&]<int taps>(std::integral_constant<int, taps>) {
-    scale = 1 / (bell_weights<taps>(fraction[0], kernel[0], weights[0]) *
-                 bell_weights<taps>(fraction[1], kernel[1], weights[1]));
+    bell_weights<taps>(fraction, kernel, weights, sums);
+    scale = 1 / (sums[0] * sums[1]);
     return gather_taps<taps>(level.sample(first[0] - taps / 2 + 1, first[1] - taps / 2 + 1), level.stride,
                              weights[0], weights[1]);
   };
@@ -331,9 +353,10 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
     sum = gather_bell(std::integral_constant<int, 6>());
   } else {
     const auto own = static_cast<float>(reconstruction_variance(filter_));
+    if (widest >= narrowest_bell) bell_weights<4>(fraction, kernel, weights, sums);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (kernel[axis] >= narrowest_bell)
-        scale /= bell_weights<4>(fraction[axis], kernel[axis], weights[axis]);
+        scale /= sums[axis];
       else
         weights[axis].block[0] = filter_ == Filter::linear
                                      ? blurred_tent_weights(fraction[axis], kernel[axis] - own)

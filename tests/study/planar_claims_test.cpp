@@ -14,6 +14,7 @@ ValidationBudget small_budget() {
   ValidationBudget budget;
   budget.resolution = 50;
   budget.reference_noise = 0.02;
+  budget.reference_known = 0;
   budget.floor_noise = 0.1;
   budget.spp = 128;
   budget.sweep_spp = 128;
