@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <deque>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -111,6 +113,29 @@ class SceneHandle {
   RTCScene scene_ = nullptr;
 };
 
+/// A disk around a triangle, in Embree's space: a quick bound on how close the triangle can be.
+struct TriangleDisk {
+  Vec3f centre;
+  float radius;
+  Vec3f normal;
+
+  TriangleDisk(const Vec3f& a, const Vec3f& b, const Vec3f& c) : centre((a + b + c) / 3.0f) {
+    radius = std::sqrt(std::max({glm::dot(a - centre, a - centre), glm::dot(b - centre, b - centre),
+                                 glm::dot(c - centre, c - centre)}));
+    const Vec3f area = glm::cross(b - a, c - a);
+    const float length = glm::length(area);
+    // A needle's normal says nothing: without one the disk counts as a ball.
+    normal = length > 1e-3f * radius * radius ? area / length : Vec3f(0);
+  }
+  /// Of the distance from p to the triangle, but for rounding.
+  float lower_bound_squared(const Vec3f& p) const {
+    const Vec3f v = p - centre;
+    const float height = glm::dot(normal, v);
+    const float aside = std::sqrt(std::max(0.0f, glm::dot(v, v) - height * height)) - radius;
+    return height * height + (aside > 0 ? aside * aside : 0);
+  }
+};
+
 /// What stays of a mesh: the arrays, not the object, so that whoever holds the mesh may move it.
 struct ObjectData {
   const Vec3* positions = nullptr;
@@ -119,7 +144,18 @@ struct ObjectData {
   std::vector<float> buffer;          // positions as Embree sees them
   std::unique_ptr<HitFilter> filter;  // its address is known to Embree
   SceneHandle scene;                  // this object alone
+  mutable std::once_flag disks_made;  // by the first query for a closest point
+  mutable std::vector<TriangleDisk> disks;
 
+  void make_disks() const {
+    const auto corner = [&](uint32_t i) {
+      return Vec3f(buffer[3 * std::size_t{i}], buffer[3 * std::size_t{i} + 1],
+                   buffer[3 * std::size_t{i} + 2]);
+    };
+    disks.reserve(triangle_count);
+    for (std::size_t t = 0; t < triangle_count; ++t)
+      disks.emplace_back(corner(corners[t][0]), corner(corners[t][1]), corner(corners[t][2]));
+  }
   Triangle triangle(uint32_t t) const {
     return {positions[corners[t][0]], positions[corners[t][1]], positions[corners[t][2]]};
   }
@@ -133,7 +169,7 @@ struct RayScene::Impl {
   // of two, exact; t is the same in both spaces.
   Vec3 centre{0};
   double scale = 1;
-  std::vector<ObjectData> objects;
+  std::deque<ObjectData> objects;
   SceneHandle scene;  // all objects; the one object's scene itself where there is but one
 
   Vec3 to_embree(const Vec3& p) const { return (p - centre) * scale; }
@@ -205,11 +241,10 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 uint32_t RayScene::add(const TriangleMesh& mesh, HitFilter filter) {
   assert(!impl_->scene && "add after commit");
-  ObjectData object;
+  ObjectData& object = impl_->objects.emplace_back();
   object.positions = mesh.positions.data(), object.position_count = mesh.positions.size();
   object.corners = mesh.corners.data(), object.triangle_count = mesh.corners.size();
   if (filter) object.filter = std::make_unique<HitFilter>(std::move(filter));
-  impl_->objects.push_back(std::move(object));
   return static_cast<uint32_t>(impl_->objects.size() - 1);
 }
 
@@ -310,18 +345,29 @@ struct ClosestQuery {
 /// rounding of the position in each axis, and that of the query point.
 constexpr double embree_rounding = 2e-7;
 
-bool consider_triangle(RTCPointQueryFunctionArguments* args) {
-  auto& query = *static_cast<ClosestQuery*>(args->userPtr);
-  const Triangle triangle = query.object.triangle(args->primID);
+/// Whether the triangle is the best so far.
+bool consider(ClosestQuery& query, uint32_t number) {
+  const Triangle triangle = query.object.triangle(number);
   const Vec2 barycentric = triangle.closest(query.point);
   const Vec3 position = triangle.point(barycentric);
   const double squared = length_squared(position - query.point);
-  const bool tie = query.best && squared == query.best_squared && args->primID < query.best->triangle;
+  const bool tie = query.best && squared == query.best_squared && number < query.best->triangle;
   if (!tie && !(squared < query.best_squared || (!query.best && squared <= query.best_squared))) return false;
   query.best_squared = squared;
-  query.best = ClosestPoint{position, barycentric, args->primID, 0};
+  query.best = ClosestPoint{position, barycentric, number, 0};
+  return true;
+}
+
+bool visit_triangle(RTCPointQueryFunctionArguments* args) {
+  auto& query = *static_cast<ClosestQuery*>(args->userPtr);
+  // Most triangles of a leaf are farther than the best so far; the margin covers the disk's rounding.
+  const float limit = args->query->radius * (1 + 4e-6f) + 1e-6f;
+  const Vec3f local(args->query->x, args->query->y, args->query->z);
+  if (query.object.disks[args->primID].lower_bound_squared(local) > limit * limit) return false;
+  if (!consider(query, args->primID)) return false;
   // A little more than the distance: ties must be visited, so that the answer is the lowest triangle's.
-  const auto radius = static_cast<float>(std::sqrt(squared) * query.scale * (1 + 1e-6) + 2 * embree_rounding);
+  const auto radius =
+      static_cast<float>(std::sqrt(query.best_squared) * query.scale * (1 + 1e-6) + 2 * embree_rounding);
   if (!(radius < args->query->radius)) return false;
   args->query->radius = radius;
   return true;
@@ -329,9 +375,13 @@ bool consider_triangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-std::optional<ClosestPoint> RayScene::closest_point(uint32_t object, const Vec3& p, double radius) const {
+std::optional<ClosestPoint> RayScene::closest_point(uint32_t object, const Vec3& p, double radius,
+                                                    uint32_t guess) const {
   if (!is_finite(p) || !(radius >= 0)) return std::nullopt;
-  ClosestQuery closest{impl_->objects[object], p, impl_->scale, radius * radius, {}};
+  const ObjectData& data = impl_->objects[object];
+  std::call_once(data.disks_made, [&] { data.make_disks(); });
+  ClosestQuery closest{data, p, impl_->scale, radius * radius, {}};
+  if (guess != no_index && consider(closest, guess)) radius = std::sqrt(closest.best_squared);
   const Vec3 local = impl_->to_embree(p);
   RTCPointQuery query;
   query.x = static_cast<float>(local.x), query.y = static_cast<float>(local.y);
@@ -341,7 +391,7 @@ std::optional<ClosestPoint> RayScene::closest_point(uint32_t object, const Vec3&
   query.radius = static_cast<float>(radius * impl_->scale * (1 + 1e-6) + 2 * embree_rounding * (1 + far));
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl_->objects[object].scene, &query, &context, consider_triangle, &closest);
+  rtcPointQuery(data.scene, &query, &context, visit_triangle, &closest);
   if (closest.best) closest.best->distance = std::sqrt(closest.best_squared);
   return closest.best;
 }

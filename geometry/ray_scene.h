@@ -57,9 +57,11 @@ class RayScene {
   /// the ray crosses the surface on an edge or corner that triangles share, that is one hit. `hits` is
   /// cleared first; its capacity is reused.
   void all_hits(uint32_t object, const Ray& ray, std::vector<Hit>& hits, double random = 0) const;
-  /// The closest point of one object's surface within `radius`; nothing if there is none.
+  /// The closest point of one object's surface within `radius`; nothing if there is none. A triangle that is
+  /// probably close saves time and changes nothing.
   std::optional<ClosestPoint> closest_point(uint32_t object, const Vec3& p,
-                                            double radius = std::numeric_limits<double>::infinity()) const;
+                                            double radius = std::numeric_limits<double>::infinity(),
+                                            uint32_t guess = no_index) const;
 
  private:
   struct Impl;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/rgb.h"
 #include "core/sampler.h"
@@ -28,6 +29,8 @@ class SubsurfaceTransport {
   /// draw found none: it counts as black.
   virtual std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer,
                                                 const Sampler& sampler, uint32_t occurrence) const = 0;
+  /// What there is to say of the work done so far, in one line; empty when nothing.
+  virtual std::string report() const { return {}; }
 };
 
 }  // namespace alabaster

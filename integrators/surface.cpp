@@ -124,9 +124,16 @@ std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t 
       throw InputError(scene_.name,
                        "light without size: no walk through a smooth boundary can meet it; use a disk "
                        "light or an environment, or --integrator surface");
-  VolumeWalkOptions walk;
-  if (options_.transport == Transport::walk) walk.albedo = WalkAlbedo::exit;
+  VolumeWalkOptions walk = options_.walk;
+  walk.albedo = options_.transport == Transport::walk ? WalkAlbedo::exit : WalkAlbedo::closest_point;
   return std::make_unique<VolumeTransport>(scene_, object, medium, std::move(boundary), walk);
+}
+
+std::vector<std::string> SurfaceIntegrator::report() const {
+  std::vector<std::string> lines;
+  for (const auto& body : bodies_)
+    if (std::string line = body->transport->report(); !line.empty()) lines.push_back(std::move(line));
+  return lines;
 }
 
 const SurfaceIntegrator::Body* SurfaceIntegrator::body(const Interaction& it) const {

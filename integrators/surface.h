@@ -7,6 +7,7 @@
 #include "integrators/integrator.h"
 #include "integrators/interaction.h"
 #include "integrators/subsurface_transport.h"
+#include "integrators/volume_walk.h"
 #include "scene/light_sampler.h"
 #include "scene/scene.h"
 
@@ -24,6 +25,7 @@ struct SurfaceOptions {
   Camera camera;
   Transport transport = Transport::bssrdf;
   std::string model = "composite";  // of Transport::bssrdf, see make_bssrdf()
+  VolumeWalkOptions walk;           // of Transport::volume and Transport::walk; which albedo is theirs to say
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;
   bool environment_visible = true;  // to camera rays
@@ -45,6 +47,9 @@ class SurfaceIntegrator final : public Integrator {
   PixelSample sample(int x, int y, const Sampler& sampler) const override;
   int width() const override { return options_.width; }
   int height() const override { return options_.height; }
+
+  /// Lines about the work below the surfaces so far.
+  std::vector<std::string> report() const;
 
  private:
   struct Interface;  // what is fixed for a material

@@ -38,7 +38,8 @@ void check_one_medium(const Scene& scene, const SceneObject& object, const std::
 
 VolumeTransport::VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
                                  std::vector<uint8_t> boundary, const VolumeWalkOptions& options)
-    : eta_(medium.eta),
+    : name_(scene.objects[object].name),
+      eta_(medium.eta),
       walk_(scene.rays, scene.objects[object].mesh, object, boundary, medium, *scene.objects[object].albedo,
             options) {
   check_closed(scene, scene.objects[object]);
@@ -57,6 +58,24 @@ std::optional<SubsurfaceEntry> VolumeTransport::sample(const SurfacePoint& exit,
   const auto end = walk_.walk(exit, glm::normalize(inwards), rng);
   if (!end || end->order == 0) return std::nullopt;
   return SubsurfaceEntry{end->point, end->direction, end->weight};
+}
+
+std::string VolumeTransport::report() const {
+  const VolumeWalk::Counts& counts = walk_.counts();
+  const auto walks = static_cast<double>(counts.walks.load());
+  if (walks == 0) return {};
+  const auto collisions = static_cast<double>(counts.collisions.load());
+  std::string text =
+      fmt::format("object '{}': {:.3g} million walks of {:.3g} collisions and {:.3g} rays", name_,
+                  1e-6 * walks, collisions / walks, static_cast<double>(counts.rays.load()) / walks);
+  if (const AlbedoCells* cells = walk_.cells())
+    text += fmt::format(
+        "; {:.3g} % of the albedos exact, the others from cells ({:.3g} million queries, {:.3g} MB) "
+        "with an error of expectation 0",
+        100 * static_cast<double>(counts.queries.load()) / std::max(1.0, collisions),
+        1e-6 * static_cast<double>(cells->queries()), 1e-6 * static_cast<double>(cells->bytes()));
+  if (const auto lost = counts.lost.load(); lost > 0) text += fmt::format("; {} walks lost", lost);
+  return text;
 }
 
 }  // namespace alabaster

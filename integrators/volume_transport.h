@@ -17,10 +17,12 @@ class VolumeTransport final : public SubsurfaceTransport {
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
+  std::string report() const override;
 
   const VolumeWalk::Counts& counts() const { return walk_.counts(); }
 
  private:
+  std::string name_;
   double eta_;
   VolumeWalk walk_;
 };

@@ -35,6 +35,8 @@ VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t 
       options_(options) {
   const BoundingBox box = bounding_box(mesh);
   slack_ = 0x1p-20 * std::max(glm::length(box.low), glm::length(box.high));
+  if (options.albedo == WalkAlbedo::closest_point && options.closest_point == ClosestPointMode::cached)
+    cells_ = std::make_unique<AlbedoCells>(rays, mesh, object, albedo, medium.mean_free_path.mean());
 }
 
 std::optional<VolumeWalkExit> VolumeWalk::walk(const SurfacePoint& start, const Vec3& direction,
@@ -58,17 +60,27 @@ std::optional<VolumeWalkExit> VolumeWalk::walk(const SurfacePoint& start, const 
 
 namespace {
 
+// Corrections of cached albedos may leave a weight negative.
+Rgb magnitude(const Rgb& weight) {
+  return {std::abs(weight.r), std::abs(weight.g), std::abs(weight.b)};
+}
+
+double largest_magnitude(const Rgb& weight) {
+  return magnitude(weight).max();
+}
+
 // One channel's free flight, chosen in proportion to the weight each channel still carries.
 int choose_channel(const Rgb& weight, Rng& rng) {
-  const double u = rng.uniform() * (weight.r + weight.g + weight.b);
-  return u < weight.r ? 0 : u < weight.r + weight.g ? 1 : 2;
+  const Rgb share = magnitude(weight);
+  const double u = rng.uniform() * (share.r + share.g + share.b);
+  return u < share.r ? 0 : u < share.r + share.g ? 1 : 2;
 }
 
 // What the weights become where the flight was drawn from the mixture of the channels' densities (balance
 // heuristic): value_c / sum_k p_k density_k, p_k the weights' shares.
 Rgb reweight(const Rgb& weight, const Rgb& value, const Rgb& density) {
-  const Rgb shared = weight * density;
-  const double mixture = (shared.r + shared.g + shared.b) / (weight.r + weight.g + weight.b);
+  const Rgb share = magnitude(weight), shared = share * density;
+  const double mixture = (shared.r + shared.g + shared.b) / (share.r + share.g + share.b);
   return mixture > 0 ? weight * value / mixture : Rgb();
 }
 
@@ -104,23 +116,44 @@ bool VolumeWalk::advance(State& state, Rng& rng) const {
 
 bool VolumeWalk::collide(State& state, Rng& rng) const {
   if (++state.order > options_.max_order) return ++state.lost, false;
-  if (options_.albedo == WalkAlbedo::exit) {
-    state.weight *= state.exit_albedo;
-  } else {
-    const auto closest = rays_.closest_point(object_, state.position, state.reach + slack_);
-    ++state.queries;
-    if (!closest) return ++state.lost, false;
-    state.clearance = closest->distance - slack_;
-    state.reach = closest->distance;
-    state.weight *= albedo_.at(mesh_.surface_point(closest->triangle, closest->barycentric));
-  }
-  const double survival = state.weight.max() * 4;
+  const auto albedo = this->albedo(state, rng);
+  if (!albedo) return ++state.lost, false;
+  state.weight *= *albedo;
+  const double survival = largest_magnitude(state.weight) * 4;
   if (survival < 1) {
     if (rng.uniform() >= survival) return false;
     state.weight /= survival;
   }
   state.direction = scatter(state.direction, medium_.g, rng);
   return true;
+}
+
+std::optional<Rgb> VolumeWalk::albedo(State& state, Rng& rng) const {
+  if (options_.albedo == WalkAlbedo::exit) return state.exit_albedo;
+  if (!cells_) return exact_albedo(state, state.reach, no_index);
+  const AlbedoCells::View cell = cells_->at(state.position);
+  if (cell.exactness >= 1) return exact_albedo(state, std::min(state.reach, cell.reach), cell.triangle);
+  if (rng.uniform() >= cell.exactness) {
+    state.clearance = std::max(state.clearance, cell.clearance - slack_);
+    state.reach = std::min(state.reach, cell.reach);
+    return cell.albedo;
+  }
+  const auto exact = exact_albedo(state, std::min(state.reach, cell.reach), cell.triangle);
+  if (!exact) return exact;
+  return cell.albedo + (*exact - cell.albedo) / cell.exactness;
+}
+
+std::optional<Rgb> VolumeWalk::exact_albedo(State& state, double reach, uint32_t guess) const {
+  const auto closest = rays_.closest_point(object_, state.position, reach + slack_, guess);
+  ++state.queries;
+  if (!closest) return std::nullopt;
+  state.clearance = closest->distance - slack_;
+  state.reach = closest->distance;
+  SurfacePoint point;  // an albedo needs no more of it
+  point.triangle = closest->triangle;
+  point.barycentric = closest->barycentric;
+  point.uv = mesh_.uv(closest->triangle, closest->barycentric);
+  return albedo_.at(point);
 }
 
 bool VolumeWalk::meet_boundary(State& state, const Hit& hit, Rng& rng) const {

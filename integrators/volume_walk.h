@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "core/rng.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
+#include "integrators/albedo_cells.h"
 #include "scene/medium.h"
 #include "texture/albedo_field.h"
 
@@ -20,8 +22,15 @@ enum class WalkAlbedo {
   exit            // the exit point's, everywhere: what production random walks do
 };
 
+/// How the closest point is found.
+enum class ClosestPointMode {
+  cached,  // cells of albedo, corrected at random by exact queries: the same expectation (albedo_cells.h)
+  exact    // a query at every collision: the oracle
+};
+
 struct VolumeWalkOptions {
   WalkAlbedo albedo = WalkAlbedo::closest_point;
+  ClosestPointMode closest_point = ClosestPointMode::cached;
   /// Paths are cut after this many collisions; what is lost is counted. A guard against endless loops at
   /// albedo 1, not a parameter of quality.
   int64_t max_order = 10'000'000;
@@ -51,15 +60,20 @@ class VolumeWalk {
   std::optional<VolumeWalkExit> walk(const SurfacePoint& start, const Vec3& direction, Rng& rng) const;
 
   struct Counts {
-    std::atomic<int64_t> collisions{0}, queries{0}, rays{0}, walks{0};
-    std::atomic<int64_t> lost{0};  // slipped through a crack between triangles, or longer than max_order
+    std::atomic<int64_t> collisions{0}, rays{0}, walks{0};
+    std::atomic<int64_t> queries{0};  // of collisions, for the closest point
+    std::atomic<int64_t> lost{0};     // slipped through a crack between triangles, or longer than max_order
   };
   const Counts& counts() const { return counts_; }
+  /// Nothing where every query is exact.
+  const AlbedoCells* cells() const { return cells_.get(); }
 
  private:
   struct State;
   bool advance(State& state, Rng& rng) const;
   bool collide(State& state, Rng& rng) const;
+  std::optional<Rgb> albedo(State& state, Rng& rng) const;
+  std::optional<Rgb> exact_albedo(State& state, double reach, uint32_t guess) const;
   bool meet_boundary(State& state, const Hit& hit, Rng& rng) const;
 
   const RayScene& rays_;
@@ -72,6 +86,7 @@ class VolumeWalk {
   double slack_;  // m: what single precision may be off by
   const AlbedoField& albedo_;
   VolumeWalkOptions options_;
+  std::unique_ptr<AlbedoCells> cells_;
   mutable Counts counts_;
 };
 

@@ -111,6 +111,7 @@ SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scen
                       : settings.integrator == "walk" ? Transport::walk
                                                       : Transport::bssrdf;
   options.model = settings.model;
+  options.walk = settings.walk;
   options.depth = settings.depth;
   options.environment_visible = scene.environment_visible && !settings.load.hide_environment;
   return options;
@@ -210,6 +211,7 @@ bool run_render_job(const RenderJob& job, SceneCache& scenes) {
     const RenderResult result = render(integrator, render_options(settings, output.filename().string()));
     write_outputs(job, settings, result, output, png);
     say_closing_line(result, output);
+    for (const std::string& line : integrator.report()) say(line);
     if (result.cancelled) return false;
   }
   return true;

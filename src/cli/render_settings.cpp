@@ -94,6 +94,11 @@ void set_basis(RenderSettings& s, const Value& v) {
   s.basis = v.text;
 }
 
+void set_closest_point(RenderSettings& s, const Value& v) {
+  if (v.text != "cached" && v.text != "exact") v.refuse("is not known; use cached or exact");
+  s.walk.closest_point = v.text == "exact" ? ClosestPointMode::exact : ClosestPointMode::cached;
+}
+
 void set_sampler(RenderSettings& s, const Value& v) {
   try {
     s.sampler = sampler_kind_from_name(v.text);
@@ -123,6 +128,7 @@ const std::vector<Option>& options() {
       {{"integrator", "NAME", "surface (the default), volume (the reference) or walk", true}, set_integrator},
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
       {{"basis", "NAME", "half-space", true}, set_basis},
+      {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},
       {{"size", "WxH", "pixels of the whole image (512x512)", true}, set_size},
       {{"crop", "X0,Y0,X1,Y1", "render this part only, pixels from the top left", true}, set_crop},

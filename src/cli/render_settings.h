@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/render.h"
+#include "integrators/volume_walk.h"
 #include "scene/scene_file.h"
 
 namespace alabaster {
@@ -39,6 +40,7 @@ struct RenderSettings {
   std::string png;
   double exposure = 0;  // stops
   bool quiet = false;
+  VolumeWalkOptions walk;
   LoadOptions load;
 
   /// What was asked for, or 64, or without end when there is only a time limit.

@@ -23,6 +23,23 @@ class EqualAlbedo final : public AlbedoField {
   Rgb value_;
 };
 
+/// Stripes across x and slow waves along y and z, by the position on the surface.
+class StripedAlbedo final : public AlbedoField {
+ public:
+  StripedAlbedo(const TriangleMesh& mesh, double period) : mesh_(mesh), period_(period) {}
+  Rgb at(const SurfacePoint& point) const override {
+    const Vec3 p = mesh_.position(point.triangle, point.barycentric) / period_;
+    const double stripe = p.x - std::floor(p.x) < 0.5 ? 1 : 0.7;
+    return {0.97 * stripe, stripe * (0.8 + 0.15 * std::sin(p.y)), 0.75 + 0.2 * std::sin(2 * p.z)};
+  }
+  Rgb filtered(const KernelFootprint&) const override { return Rgb(1); }
+  Rgb max() const override { return Rgb(0.97); }
+
+ private:
+  const TriangleMesh& mesh_;
+  double period_;
+};
+
 struct Body {
   TriangleMesh mesh;
   RayScene rays;
@@ -141,4 +158,69 @@ TEST_CASE(
   const double z = (a.scattered[0].mean() - b.scattered[0].mean()) /
                    std::sqrt(a.scattered[0].variance_of_mean() + b.scattered[0].variance_of_mean());
   CHECK(two_sided_normal_p_value(z) > 1e-4);
+}
+
+TEST_CASE(
+    "cached closest points give what exact ones give, across edges and the medial axis (z-test at 1e-4, "
+    "Sidak "
+    "over 9)") {
+  // Periods of half to four mean free paths; the slab's middle plane is where both faces are equally close.
+  struct Case {
+    TriangleMesh mesh;
+    double period;
+  };
+  for (Case& c : std::vector<Case>{{make_blob(0.06, 0.2, 48), 0.02},
+                                   {make_torus(0.05, 0.02, 48), 0.005},
+                                   {make_slab(0.1, 0.02, 6), 0.04}}) {
+    const Body body(std::move(c.mesh));
+    const StripedAlbedo field(body.mesh, c.period);
+    VolumeWalkOptions exact;
+    exact.closest_point = ClosestPointMode::exact;
+    const Medium medium{Rgb(0.01), 0.3, 1.5};
+    const VolumeWalk cached_walk = walk_in(body, medium, field);
+    const Returned a = returned(body, cached_walk, 30000, 11);
+    const Returned b = returned(body, walk_in(body, medium, field, exact), 30000, 12);
+    const auto& counts = cached_walk.counts();
+    CHECK(counts.queries.load() < counts.collisions.load());
+    for (int k = 0; k < 3; ++k) {
+      const RunningMoments &m = a.scattered[k], &n = b.scattered[k];
+      const double z = (m.mean() - n.mean()) / std::sqrt(m.variance_of_mean() + n.variance_of_mean());
+      INFO("period " << c.period << ", channel " << k << ": " << m.mean() << " against " << n.mean() << " +- "
+                     << n.standard_error());
+      CHECK(two_sided_normal_p_value(z) > sidak(1e-4, 9));
+      CHECK(m.standard_error() < 1.25 * n.standard_error());
+    }
+  }
+}
+
+TEST_CASE("cells bound the distance to the surface and do not depend on who asked first") {
+  const Body body(make_blob(0.06, 0.2, 48));
+  const StripedAlbedo field(body.mesh, 0.02);
+  const AlbedoCells forwards(body.rays, body.mesh, 0, field, 0.01);
+  const AlbedoCells backwards(body.rays, body.mesh, 0, field, 0.01);
+  Rng rng(13);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 2000; ++i) {
+    const SurfacePoint on = body.uniform_point(rng);
+    points.push_back(on.position - 0.03 * rng.uniform() * on.geometric_normal);
+  }
+  std::vector<AlbedoCells::View> views(points.size());
+  for (std::size_t i = points.size(); i-- > 0;) views[i] = backwards.at(points[i]);
+  std::size_t guessed = 0, close = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const AlbedoCells::View view = forwards.at(points[i]);
+    CHECK(view.albedo == views[i].albedo);
+    CHECK(view.exactness == views[i].exactness);
+    const auto closest = body.rays.closest_point(0, points[i]);
+    REQUIRE(closest);
+    CHECK(view.clearance <= closest->distance + 1e-9);
+    CHECK(view.reach >= closest->distance - 1e-9);
+    if (view.exactness >= 1) continue;
+    ++guessed;
+    const Rgb exact = field.at(body.mesh.surface_point(closest->triangle, closest->barycentric));
+    close += std::abs(view.albedo.r - exact.r) < 0.1 * exact.r ? 1 : 0;
+  }
+  // That guesses are good is worth time only; that they are not good at all would be a mistake.
+  CHECK(guessed > points.size() / 3);
+  CHECK(close > guessed * 8 / 10);
 }
