@@ -24,13 +24,19 @@ PlacementBody placement_body(const Scene& scene, uint32_t object) {
 }  // namespace
 
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
-                                 std::vector<uint8_t> boundary, const std::string& model,
+                                 std::vector<uint8_t> boundary, const std::string& model, Basis basis,
                                  const std::string& placement)
     : profile_(profile_of(scene.objects[object], medium)),
       lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
       placement_(make_placement(placement, placement_body(scene, object))) {
   const SceneObject& body = scene.objects[object];
-  const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get()};
+  if (basis == Basis::shape) {
+    families_ = shapes_for(profile_->g(), profile_->eta());
+    curvature_ = CurvatureField(body.mesh, scene.rays, object);
+    shape_ = {families_.get(), &curvature_};
+  }
+  const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get(),
+                           basis == Basis::shape ? &shape_ : nullptr};
   model_ = make_bssrdf(model, below, {placement_.get()});
   // On one albedo all models are the homogeneous one, which looks nothing up.
   if (dynamic_cast<const ConstantAlbedo*>(body.albedo.get()) != nullptr)

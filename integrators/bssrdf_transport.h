@@ -3,9 +3,11 @@
 #include <memory>
 #include <string>
 
+#include "bssrdf/basis.h"
 #include "bssrdf/bssrdf.h"
 #include "bssrdf/placements.h"
 #include "bssrdf/probe_sampler.h"
+#include "geometry/curvature.h"
 #include "integrators/subsurface_transport.h"
 #include "scene/scene.h"
 
@@ -18,13 +20,17 @@ class BssrdfTransport final : public SubsurfaceTransport {
   /// InputError for a model that make_bssrdf() or a placement that make_placement() does not know. The scene
   /// outlives the transport.
   BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
-                  const std::string& model, const std::string& placement = std::string(default_placement));
+                  const std::string& model, Basis basis = Basis::half_space,
+                  const std::string& placement = std::string(default_placement));
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
 
  private:
   std::shared_ptr<const ProfileTable> profile_;
+  std::shared_ptr<const ShapeFamilies> families_;  // of the shape basis
+  CurvatureField curvature_;
+  ShapeBasis shape_;
   double lobe_;  // 1 / (pi c): what leaves is spread as T(cos_o) / (pi c)
   std::unique_ptr<KernelPlacement> placement_;
   std::unique_ptr<Bssrdf> model_;

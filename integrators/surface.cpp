@@ -117,7 +117,8 @@ void SurfaceIntegrator::prepare_bodies() {
 std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t object, const Medium& medium,
                                                                        std::vector<uint8_t> boundary) const {
   if (options_.transport == Transport::bssrdf)
-    return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model);
+    return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
+                                             options_.basis);
   for (const Light& light : scene_.lights)
     if (std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
         std::holds_alternative<DirectionalLight>(light))

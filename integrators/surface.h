@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bssrdf/basis.h"
 #include "integrators/integrator.h"
 #include "integrators/interaction.h"
 #include "integrators/subsurface_transport.h"
@@ -25,6 +26,7 @@ struct SurfaceOptions {
   Camera camera;
   Transport transport = Transport::bssrdf;
   std::string model = "composite";  // of Transport::bssrdf, see make_bssrdf()
+  Basis basis = Basis::half_space;  // of that model
   VolumeWalkOptions walk;           // of Transport::volume and Transport::walk; which albedo is theirs to say
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;

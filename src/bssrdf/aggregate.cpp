@@ -71,9 +71,9 @@ Rgb AggregateBssrdf::ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& e
 }
 
 Rgb AggregateBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const double distance = glm::distance(entry.surface.position, exit.surface.position);
-  const Rgb mean = ellipse_mean(entry, exit, distance);
-  return mean * basis_over_albedo(mean, distance);
+  const PairShape shape = pair(entry, exit);
+  const Rgb mean = ellipse_mean(entry, exit, shape.distance);
+  return mean * basis_over_albedo(mean, shape);
 }
 
 Rgb AggregateBssrdf::typical_albedo(const BssrdfPoint& exit) const {

@@ -15,11 +15,26 @@ Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium
   assert(medium.profile != nullptr && medium.albedo != nullptr && medium.sigma_t.min() > 0);
 }
 
-Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, double distance) const {
+PointShape BssrdfMedium::shape_at(const SurfacePoint& surface) const {
+  return PointShape(shape->surface->at(surface.triangle, surface.barycentric), thickest_body / sigma_t.min());
+}
+
+PairShape Bssrdf::pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+  if (medium_.shape != nullptr)
+    return pair_shape(entry.surface.position, entry.shape, exit.surface.position, exit.shape);
+  PairShape flat;
+  flat.distance = glm::distance(entry.surface.position, exit.surface.position);
+  return flat;
+}
+
+Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, const PairShape& pair) const {
   const Rgb& sigma_t = medium_.sigma_t;
-  if (sigma_t.is_grey())
-    return sigma_t.r * sigma_t.r * medium_.profile->evaluate_over_albedo(albedo, sigma_t.r * distance);
-  return sigma_t * sigma_t * medium_.profile->evaluate_over_albedo(albedo, distance * sigma_t);
+  const Rgb half_space =
+      sigma_t.is_grey()
+          ? sigma_t.r * sigma_t.r * medium_.profile->evaluate_over_albedo(albedo, sigma_t.r * pair.distance)
+          : sigma_t * sigma_t * medium_.profile->evaluate_over_albedo(albedo, pair.distance * sigma_t);
+  if (medium_.shape == nullptr) return half_space;
+  return half_space * medium_.shape->families->factor(pair, albedo, sigma_t);
 }
 
 // Half of the draws follow the exit's albedo, half the largest anywhere: a dark exit amid bright surroundings

@@ -5,6 +5,7 @@
 
 #include "bssrdf/distance_table.h"
 #include "bssrdf/kernel_placement.h"
+#include "bssrdf/pair_shape.h"
 #include "core/rgb.h"
 #include "geometry/surface_point.h"
 #include "optics/profile_table.h"
@@ -16,15 +17,29 @@ namespace alabaster {
 struct BssrdfPoint {
   SurfacePoint surface;
   Rgb albedo;
+  PointShape shape{};  // filled for the shape basis only
+};
+
+/// What the shape basis reads: the families of its medium and the shape of the object's surface.
+struct ShapeBasis {
+  const ShapeFamilies* families = nullptr;
+  const CurvatureField* surface = nullptr;
 };
 
 /// What light meets below one surface: the homogeneous basis in scene units and the albedo over the surface.
+/// Without `shape` the basis is that of a half-space.
 struct BssrdfMedium {
   const ProfileTable* profile = nullptr;
   Rgb sigma_t;                          // 1/m
   const AlbedoField* albedo = nullptr;  // of the object
+  const ShapeBasis* shape = nullptr;
 
-  BssrdfPoint point(const SurfacePoint& surface) const { return {surface, albedo->at(surface)}; }
+  BssrdfPoint point(const SurfacePoint& surface) const {
+    return {surface, albedo->at(surface), shape != nullptr ? shape_at(surface) : PointShape{}};
+  }
+
+ private:
+  PointShape shape_at(const SurfacePoint& surface) const;
 };
 
 /// A spatially varying BSSRDF S_V(x_i, x_e). Exactly: evaluate, sample a distance, pdf of a distance.
@@ -50,8 +65,11 @@ class Bssrdf {
   const DistanceTable& distances() const { return distances_; }
 
  protected:
-  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha.
-  Rgb basis_over_albedo(const Rgb& albedo, double distance) const;
+  /// Distance and shape of a pair, for the basis.
+  PairShape pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const;
+  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
+  /// the shape.
+  Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const;
 
   BssrdfMedium medium_;
 

@@ -28,10 +28,10 @@ CompositeBssrdf::CompositeBssrdf(const BssrdfMedium& medium, const KernelPlaceme
 
 Rgb CompositeBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
   if ((entry.albedo * exit.albedo).is_black()) return {};
-  const double distance = glm::distance(entry.surface.position, exit.surface.position);
+  const PairShape shape = pair(entry, exit);
   const Rgb between =
-      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, distance, taps_);
-  return local_factor(entry.albedo, exit.albedo, between) * basis_over_albedo(between, distance);
+      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, shape.distance, taps_);
+  return local_factor(entry.albedo, exit.albedo, between) * basis_over_albedo(between, shape);
 }
 
 Rgb CompositeBssrdf::typical_albedo(const BssrdfPoint& exit) const {
@@ -46,11 +46,11 @@ OrderOneApartBssrdf::OrderOneApartBssrdf(const BssrdfMedium& medium, const Kerne
     : Bssrdf(medium), placement_(placement) {}
 
 Rgb OrderOneApartBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const double distance = glm::distance(entry.surface.position, exit.surface.position);
+  const PairShape shape = pair(entry, exit);
   const Rgb between =
-      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, distance, ek17_kernel);
-  const Rgb once = basis_over_albedo(Rgb(0), distance);
-  const Rgb more = basis_over_albedo(between, distance) - once;
+      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, shape.distance, ek17_kernel);
+  const Rgb once = basis_over_albedo(Rgb(0), shape);
+  const Rgb more = basis_over_albedo(between, shape) - once;
   return between * once + local_factor(entry.albedo, exit.albedo, between) * more;
 }
 

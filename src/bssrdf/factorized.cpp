@@ -5,10 +5,10 @@
 namespace alabaster {
 
 Rgb FactorizedBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const double distance = glm::distance(entry.surface.position, exit.surface.position);
-  const Rgb at_exit = exit.albedo * basis_over_albedo(exit.albedo, distance);
+  const PairShape shape = pair(entry, exit);
+  const Rgb at_exit = exit.albedo * basis_over_albedo(exit.albedo, shape);
   if (entry.albedo == exit.albedo) return at_exit;
-  const Rgb product = at_exit * entry.albedo * basis_over_albedo(entry.albedo, distance);
+  const Rgb product = at_exit * entry.albedo * basis_over_albedo(entry.albedo, shape);
   return {std::sqrt(product.r), std::sqrt(product.g), std::sqrt(product.b)};
 }
 

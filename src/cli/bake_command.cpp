@@ -10,6 +10,8 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "optics/bake.h"
+#include "optics/profile_store.h"
+#include "optics/shape_bake.h"
 #include "study/optics_report.h"
 
 namespace alabaster {
@@ -22,11 +24,44 @@ struct BakeArguments {
   uint64_t photons = 0;  // 0: as the quality says
   uint64_t seed = 1;
   std::string view = "all";
+  bool shapes = false;
   std::filesystem::path output;
   std::filesystem::path report;
 };
 
+void report(const BakeArguments& arguments, uint64_t photons, uint64_t collisions, double start,
+            double cpu_start) {
+  say(fmt::format("{}: {} photons, {:.3g} collisions, {} ({:.1f} M collisions per CPU second)",
+                  arguments.output.string(), photons, static_cast<double>(collisions),
+                  format_duration(wall_seconds() - start),
+                  1e-6 * static_cast<double>(collisions) / (cpu_seconds() - cpu_start)));
+}
+
+void run_shapes(const BakeArguments& arguments) {
+  if (!arguments.report.empty() || arguments.view != "all")
+    throw InputError("--shapes takes neither --report nor --view");
+  ShapeBakeOptions options;
+  options.medium = {arguments.g, arguments.eta};
+  options.seed = arguments.seed;
+  options.photons = arguments.photons > 0          ? arguments.photons
+                    : arguments.quality == "quick" ? quick_shape_photons
+                                                   : full_shape_photons;
+  ProfileRequest request;
+  request.g = arguments.g;
+  request.eta = arguments.eta;
+  const auto half_space = profile_for(request);
+  const double start = wall_seconds(), cpu_start = cpu_seconds();
+  ShapeTable table;
+  {
+    Progress progress("baking shapes");
+    table = bake_shapes(options, *half_space, [&](double done) { progress.update(done); });
+  }
+  write_shape_table(arguments.output, table);
+  report(arguments, table.photons, table.collisions, start, cpu_start);
+}
+
 void run(const BakeArguments& arguments) {
+  if (arguments.shapes) return run_shapes(arguments);
   if (!arguments.report.empty() && arguments.view != "all")
     throw InputError("--report measures tables of all outgoing light; leave out --view normal");
   BakeOptions options;
@@ -49,10 +84,7 @@ void run(const BakeArguments& arguments) {
     write_optics_report(half_space_tally(check, [&](double done) { progress.update(done); }), table,
                         arguments.report);
   }
-  say(fmt::format("{}: {} photons, {:.3g} collisions, {} ({:.1f} M collisions per CPU second)",
-                  arguments.output.string(), table.photons, static_cast<double>(table.collisions),
-                  format_duration(wall_seconds() - start),
-                  1e-6 * static_cast<double>(table.collisions) / (cpu_seconds() - cpu_start)));
+  report(arguments, table.photons, table.collisions, start, cpu_start);
 }
 
 }  // namespace
@@ -72,7 +104,10 @@ void add_bake_command(CLI::App& app) {
   command->add_option("--view", arguments->view, "outgoing light tabulated: all of it, or along the normal")
       ->check(CLI::IsMember({"all", "normal"}))
       ->capture_default_str();
-  command->add_option("--photons", arguments->photons, "number of photons instead of the quality's");
+  command->add_flag("--shapes", arguments->shapes,
+                    "simulate balls, cavities and slabs instead, for the shape basis");
+  command->add_option("--photons", arguments->photons,
+                      "number of photons (--shapes: per body) instead of the quality's");
   command->add_option("--seed", arguments->seed, "random seed")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "table file to write")->required();
   command->add_option(

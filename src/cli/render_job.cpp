@@ -111,6 +111,7 @@ SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scen
                       : settings.integrator == "walk" ? Transport::walk
                                                       : Transport::bssrdf;
   options.model = settings.model;
+  options.basis = settings.basis == "shape" ? Basis::shape : Basis::half_space;
   options.walk = settings.walk;
   options.depth = settings.depth;
   options.environment_visible = scene.environment_visible && !settings.load.hide_environment;

@@ -89,8 +89,7 @@ void set_model(RenderSettings& s, const Value& v) {
 }
 
 void set_basis(RenderSettings& s, const Value& v) {
-  if (v.text == "shape") v.refuse("is not available in this version; use half-space");
-  if (v.text != "half-space") v.refuse("is not known; use half-space");
+  if (v.text != "half-space" && v.text != "shape") v.refuse("is not known; use half-space or shape");
   s.basis = v.text;
 }
 
@@ -127,7 +126,7 @@ const std::vector<Option>& options() {
   static const std::vector<Option> all{
       {{"integrator", "NAME", "surface (the default), volume (the reference) or walk", true}, set_integrator},
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
-      {{"basis", "NAME", "half-space", true}, set_basis},
+      {{"basis", "NAME", "half-space (the default) or shape", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},
       {{"size", "WxH", "pixels of the whole image (512x512)", true}, set_size},

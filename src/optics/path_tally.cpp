@@ -78,13 +78,15 @@ int stage_of_group(int group) {
   return stage;
 }
 
-PathTally::PathTally(bool normal_view)
+PathTally::PathTally(bool normal_view, bool far_side)
     : exits_(static_cast<std::size_t>(OrderGroups::count) * RadialBins::count),
+      far_exits_(far_side ? exits_.size() : 0),
       directions_(static_cast<std::size_t>(OrderGroups::count) * cosine_bins),
       normal_views_(normal_view ? exits_.size() : 0) {}
 
 void PathTally::merge(const PathTally& other) {
   for (std::size_t i = 0; i < exits_.size(); ++i) exits_[i] += other.exits_[i];
+  for (std::size_t i = 0; i < far_exits_.size(); ++i) far_exits_[i] += other.far_exits_[i];
   for (std::size_t i = 0; i < directions_.size(); ++i) directions_[i] += other.directions_[i];
   for (std::size_t i = 0; i < normal_views_.size(); ++i) normal_views_[i] += other.normal_views_[i];
   for (std::size_t i = 0; i < stopped_.size(); ++i) stopped_[i] += other.stopped_[i];
@@ -93,7 +95,7 @@ void PathTally::merge(const PathTally& other) {
 
 uint64_t PathTally::exits_of_stage(int stage) const {
   uint64_t sum = 0;
-  for (int group = 1; group < OrderGroups::count; ++group)
+  for (int group = 0; group < OrderGroups::count; ++group)
     if (stage_of_group(group) == stage)
       for (int bin = 0; bin < cosine_bins; ++bin) sum += exits_by_cosine(group, bin);
   return sum;
@@ -124,6 +126,11 @@ double PathTally::truncated() const {
 
 std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo) {
   return weigh(tally, albedo, RadialBins::count, [&](int group, int bin) { return tally.exits(group, bin); });
+}
+
+std::vector<Estimate> far_radial_energy_over_albedo(const PathTally& tally, double albedo) {
+  return weigh(tally, albedo, RadialBins::count,
+               [&](int group, int bin) { return tally.far_exits(group, bin); });
 }
 
 std::vector<Estimate> normal_view_energy_over_albedo(const PathTally& tally, double albedo, double score) {

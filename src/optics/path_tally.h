@@ -38,15 +38,18 @@ class PathTally {
  public:
   static constexpr int cosine_bins = 32;  // of the outside direction against the normal, equal in cosine
 
-  /// `normal_view`: also holds scores of light leaving along the normal.
-  explicit PathTally(bool normal_view = false);
+  /// `normal_view`: also holds scores of light leaving along the normal; `far_side`: also exits on the far
+  /// side of a slab.
+  explicit PathTally(bool normal_view = false, bool far_side = false);
 
-  /// A photon that left after `order` >= 1 collisions at the squared distance, outside cosine in [0, 1].
+  /// A photon that left after `order` collisions (0: it crossed a finite body without one) at the squared
+  /// distance, outside cosine in [0, 1].
   void add_exit(int64_t order, double rho_squared, double cosine_outside) {
-    const auto group = static_cast<std::size_t>(OrderGroups::index(order));
-    ++exits_[group * RadialBins::count + static_cast<std::size_t>(RadialBins::index_of_square(rho_squared))];
-    const auto bin = static_cast<std::size_t>(cosine_outside * cosine_bins);
-    ++directions_[group * cosine_bins + (bin < cosine_bins ? bin : cosine_bins - 1)];
+    add_exit(exits_, order, rho_squared, cosine_outside);
+  }
+  /// The same on the far side of a slab, at the squared lateral distance.
+  void add_far_exit(int64_t order, double rho_squared, double cosine_outside) {
+    add_exit(far_exits_, order, rho_squared, cosine_outside);
   }
   /// A photon still inside after the last collision its stage allows.
   void add_stopped(int stage) { ++stopped_[static_cast<std::size_t>(stage)]; }
@@ -65,6 +68,11 @@ class PathTally {
   uint64_t exits(int group, int bin) const {
     return exits_[static_cast<std::size_t>(group) * RadialBins::count + static_cast<std::size_t>(bin)];
   }
+  bool has_far_side() const { return !far_exits_.empty(); }
+  uint64_t far_exits(int group, int bin) const {
+    return far_exits_[static_cast<std::size_t>(group) * RadialBins::count + static_cast<std::size_t>(bin)];
+  }
+  /// Both sides together.
   uint64_t exits_by_cosine(int group, int bin) const {
     return directions_[static_cast<std::size_t>(group) * cosine_bins + static_cast<std::size_t>(bin)];
   }
@@ -80,7 +88,15 @@ class PathTally {
   double truncated() const;
 
  private:
+  void add_exit(std::vector<uint64_t>& exits, int64_t order, double rho_squared, double cosine_outside) {
+    const auto group = static_cast<std::size_t>(OrderGroups::index(order));
+    ++exits[group * RadialBins::count + static_cast<std::size_t>(RadialBins::index_of_square(rho_squared))];
+    const auto bin = static_cast<std::size_t>(cosine_outside * cosine_bins);
+    ++directions_[group * cosine_bins + (bin < cosine_bins ? bin : cosine_bins - 1)];
+  }
+
   std::vector<uint64_t> exits_;         // [group][radial bin]
+  std::vector<uint64_t> far_exits_;     // the same, or empty
   std::vector<uint64_t> directions_;    // [group][cosine bin]
   std::vector<uint64_t> normal_views_;  // [group][radial bin], or empty
   std::vector<uint64_t> stopped_ = std::vector<uint64_t>(WalkStages::count);
@@ -92,6 +108,8 @@ int stage_of_group(int group);
 
 /// The tally read at one albedo: energy per radial bin, per unit that entered, divided by the albedo.
 std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo);
+/// The same for the far side of a slab.
+std::vector<Estimate> far_radial_energy_over_albedo(const PathTally& tally, double albedo);
 
 /// The same for light leaving along the normal: of the scores, times `score` each. The errors are those of
 /// independent scores; one photon makes several, so they are somewhat too small.

@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "optics/bake.h"
 #include "optics/mixture_profile.h"
+#include "optics/shape_bake.h"
 #include "optics/tabulated_profile.h"
 
 namespace alabaster {
@@ -78,32 +79,79 @@ TableData ProfileStore::bake(const ProfileRequest& request) {
   return bake_table(options, [&](double done) { progress.update(done); });
 }
 
-std::shared_ptr<const TableData> ProfileStore::load_or_bake(const ProfileRequest& request) {
-  const fs::path file = file_of(request);
+namespace {
+
+// The table in that file if it is there and `fits`, else a new one, which is left there.
+template <typename Table, typename Read, typename Fits, typename Bake, typename Write>
+Table read_or_bake(const fs::path& file, const Read& read, const Fits& fits, const Bake& bake,
+                   const Write& write) {
   std::error_code error;
-  fs::create_directories(folder_, error);
+  fs::create_directories(file.parent_path(), error);
   const FileLock lock(fs::path(file).replace_extension(".lock"));
   if (!lock.held()) {
-    warn(folder_.string() +
+    warn(file.parent_path().string() +
          ": cannot be written, so the profile is baked for this run only; set XDG_CACHE_HOME");
-    return std::make_shared<TableData>(bake(request));
+    return bake();
   }
   if (fs::exists(file, error)) {
     try {
-      auto table = std::make_shared<TableData>(read_table(file));
-      if (table->g == request.g && table->eta == request.eta && table->view == request.view) return table;
+      Table table = read(file);
+      if (fits(table)) return table;
       warn(file.string() + ": holds the profile of another medium; baking it anew");
     } catch (const InputError& problem) {
       warn(std::string(problem.what()) + " (doing so)");
     }
   }
-  auto table = std::make_shared<TableData>(bake(request));
+  Table table = bake();
   try {
-    write_table(file, *table);
+    write(file, table);
   } catch (const InputError& problem) {
     warn(problem.what());
   }
   return table;
+}
+
+}  // namespace
+
+std::shared_ptr<const TableData> ProfileStore::load_or_bake(const ProfileRequest& request) {
+  return std::make_shared<TableData>(read_or_bake<TableData>(
+      file_of(request), read_table,
+      [&](const TableData& table) {
+        return table.g == request.g && table.eta == request.eta && table.view == request.view;
+      },
+      [&] { return bake(request); }, write_table));
+}
+
+ShapeTable ProfileStore::load_or_bake_shapes(double g, double eta) {
+  const auto half_space = get({g, eta, TableView::all, ProfileForm::tabulated});
+  return read_or_bake<ShapeTable>(
+      folder_ / fmt::format("shapes_g{}_eta{}.table", g, eta), read_shape_table,
+      [&](const ShapeTable& table) { return table.g == g && table.eta == eta; },
+      [&] {
+        const std::string label = fmt::format("baking the shapes of g = {}, eta = {}", g, eta);
+        say(label + " (once; kept in " + folder_.string() + ")");
+        Progress progress(label);
+        ++bakes_;
+        ShapeBakeOptions options;
+        options.medium = {g, eta};
+        options.photons = std::max<uint64_t>(photons_ * quick_shape_photons / quick_photons, 1);
+        return bake_shapes(options, *half_space, [&](double done) { progress.update(done); });
+      },
+      write_shape_table);
+}
+
+std::shared_ptr<const ShapeFamilies> ProfileStore::get_shapes(double g, double eta) {
+  check({g, eta, TableView::all, ProfileForm::tabulated});
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (const auto found = shapes_.find({g, eta}); found != shapes_.end()) return found->second;
+  }
+  const bool is_baseline = g == baseline_shape_table().g && eta == baseline_shape_table().eta;
+  const auto shapes =
+      is_baseline ? std::shared_ptr<const ShapeFamilies>(&baseline_shapes(), [](const ShapeFamilies*) {})
+                  : std::make_shared<const ShapeFamilies>(load_or_bake_shapes(g, eta));
+  const std::lock_guard<std::mutex> guard(mutex_);
+  return shapes_.emplace(std::pair{g, eta}, shapes).first->second;
 }
 
 std::shared_ptr<const ProfileTable> ProfileStore::get(const ProfileRequest& request) {
@@ -125,9 +173,21 @@ std::shared_ptr<const ProfileTable> ProfileStore::get(const ProfileRequest& requ
   return profile;
 }
 
-std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request) {
+namespace {
+
+ProfileStore& store_of_user() {
   static ProfileStore store(cache_folder(), quick_photons);
-  return store.get(request);
+  return store;
+}
+
+}  // namespace
+
+std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request) {
+  return store_of_user().get(request);
+}
+
+std::shared_ptr<const ShapeFamilies> shapes_for(double g, double eta) {
+  return store_of_user().get_shapes(std::clamp(g, -0.99, 0.99), std::clamp(eta, 1.0, 4.0));
 }
 
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta) {

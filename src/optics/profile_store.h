@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "optics/profile_table.h"
+#include "optics/shape_families.h"
 #include "optics/table_data.h"
 
 namespace alabaster {
@@ -32,11 +33,14 @@ class ProfileStore {
   /// Throws InputError for g outside [-0.99, 0.99] or eta outside [1, 4].
   std::shared_ptr<const ProfileTable> get(const ProfileRequest& request);
   std::filesystem::path file_of(const ProfileRequest& request) const;
+  /// The shapes of the same medium, kept beside the table; `photons` of the table set theirs too.
+  std::shared_ptr<const ShapeFamilies> get_shapes(double g, double eta);
   /// Tables baked by this object so far.
   int bakes() const { return bakes_; }
 
  private:
   std::shared_ptr<const TableData> load_or_bake(const ProfileRequest& request);
+  ShapeTable load_or_bake_shapes(double g, double eta);
   TableData bake(const ProfileRequest& request);
 
   std::filesystem::path folder_;
@@ -45,6 +49,7 @@ class ProfileStore {
   std::mutex mutex_;
   std::map<std::tuple<double, double, TableView>, std::shared_ptr<const TableData>> tables_;
   std::map<std::tuple<double, double, TableView, ProfileForm>, std::shared_ptr<const ProfileTable>> profiles_;
+  std::map<std::pair<double, double>, std::shared_ptr<const ShapeFamilies>> shapes_;
 };
 
 /// The built-in baseline, or a table of the user's cache ($XDG_CACHE_HOME/alabaster, else
@@ -53,6 +58,8 @@ std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request);
 /// The same for a medium of a scene: beyond the range the nearest there is, with a warning. Kept until the
 /// program ends.
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta);
+/// The shapes that go with it: built in for the baseline, else baked once.
+std::shared_ptr<const ShapeFamilies> shapes_for(double g, double eta);
 
 /// The data of the built-in baseline table.
 const TableData& baseline_table();

@@ -1,84 +1,19 @@
 #include "optics/table_data.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "optics/radial_bins.h"
+#include "optics/table_archive.h"
 
 namespace alabaster {
-
-static_assert(std::endian::native == std::endian::little, "tables are written as they lie in memory");
 
 namespace {
 
 constexpr char magic[8] = {'A', 'L', 'A', 'B', 'P', 'R', 'O', 'F'};
-
-uint64_t fnv1a(std::span<const char> bytes) {
-  uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  return hash;
-}
-
-class Writer {
- public:
-  void raw(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
-  void field(double value) { raw(&value, sizeof value); }
-  void field(uint64_t value) { raw(&value, sizeof value); }
-  void field(uint32_t value) { raw(&value, sizeof value); }
-  void field(const std::string& text) {
-    field(uint64_t{text.size()});
-    raw(text.data(), text.size());
-  }
-  template <typename T>
-  void field(const std::vector<T>& values) {
-    field(uint64_t{values.size()});
-    raw(values.data(), values.size() * sizeof(T));
-  }
-  std::string& bytes() { return bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-class Reader {
- public:
-  Reader(std::span<const char> bytes, const std::string& name) : rest_(bytes), name_(name) {}
-
-  void raw(void* data, std::size_t size) {
-    if (size > rest_.size()) throw InputError(name_, "the profile table is truncated; bake it again");
-    if (size > 0) std::memcpy(data, rest_.data(), size);
-    rest_ = rest_.subspan(size);
-  }
-  void field(double& value) { raw(&value, sizeof value); }
-  void field(uint64_t& value) { raw(&value, sizeof value); }
-  void field(uint32_t& value) { raw(&value, sizeof value); }
-  void field(std::string& text) {
-    text.resize(length(1));
-    raw(text.data(), text.size());
-  }
-  template <typename T>
-  void field(std::vector<T>& values) {
-    values.resize(length(sizeof(T)));
-    raw(values.data(), values.size() * sizeof(T));
-  }
-  std::size_t left() const { return rest_.size(); }
-
- private:
-  std::size_t length(std::size_t element) {
-    uint64_t count = 0;
-    field(count);
-    if (count > rest_.size() / element)
-      throw InputError(name_, "the profile table is truncated; bake it again");
-    return count;
-  }
-
-  std::span<const char> rest_;
-  const std::string& name_;
-};
 
 template <typename Archive, typename Table>
 void transfer(Archive& archive, Table& table) {
@@ -121,7 +56,7 @@ double AlbedoRows::albedo(double position) {
 }
 
 std::string encode_table(const TableData& table) {
-  Writer writer;
+  TableWriter writer;
   writer.raw(magic, sizeof magic);
   writer.field(TableData::version);
   transfer(writer, table);
@@ -130,7 +65,7 @@ std::string encode_table(const TableData& table) {
 }
 
 TableData decode_table(std::span<const char> bytes, const std::string& name) {
-  Reader reader(bytes, name);
+  TableReader reader(bytes, name);
   char found[sizeof magic];
   uint32_t version = 0;
   if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)

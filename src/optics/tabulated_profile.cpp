@@ -6,6 +6,7 @@
 #include "core/vec.h"
 #include "optics/fast_math.h"
 #include "optics/radial_bins.h"
+#include "optics/row_position.h"
 
 namespace alabaster {
 
@@ -30,15 +31,6 @@ double node_radius(int node) {
 }
 std::size_t sampled_index(int node, int row) {
   return static_cast<std::size_t>(node) * sampled_rows + static_cast<std::size_t>(row);
-}
-
-// Position among the rows of the albedo 1 - remainder, 0 to rows - 1.
-template <typename Float>
-inline Float row_position(Float remainder) {
-  constexpr auto inverse_knee = static_cast<float>(1 / AlbedoRows::knee);
-  constexpr auto scale = static_cast<float>((rows - 1) / AlbedoRows::length);
-  const Float root = square_root(remainder);
-  return scale * (fast_log2(1.f + root * inverse_knee) + static_cast<float>(AlbedoRows::linear) * root);
 }
 
 // Position among the radial nodes, at least 0.
@@ -125,7 +117,7 @@ namespace {
 
 // Catmull-Rom over the rows, linear over the nodes; four (remainder, rho) at once.
 inline Float4 interpolate(const std::vector<float>& table, Float4 remainder, Float4 rho) {
-  const Float4 position = row_position(remainder), distance = node_position(rho);
+  const Float4 position = fast_row_position(remainder), distance = node_position(rho);
   Int4 row = to_integer(position), node = to_integer(distance);
   const Int4 last_row = row - row + (rows - 2), last_node = row - row + (nodes - 2);
   row = row < last_row ? row : last_row;
@@ -165,7 +157,7 @@ Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, const Rgb& rho) co
 
 TabulatedProfile::Row TabulatedProfile::sampled_row(double albedo) const {
   const double position =
-      double{row_position(static_cast<float>(1 - std::clamp(albedo, 0.0, 1.0)))} / sampled_stride;
+      double{fast_row_position(static_cast<float>(1 - std::clamp(albedo, 0.0, 1.0)))} / sampled_stride;
   const int index = std::min(static_cast<int>(position), sampled_rows - 2);
   return {index, std::min(1.0, position - index)};
 }

@@ -24,6 +24,12 @@ struct Body {
   Body& operator=(const Body&) = delete;
 
   alabaster::PlacementBody parts() const { return {&mesh, &atlas, &rays, 0}; }
+  /// For BssrdfMedium::shape, with the baseline's families.
+  const alabaster::ShapeBasis* shape() {
+    if (curvature.empty()) curvature = alabaster::CurvatureField(mesh, rays, 0);
+    basis = {&alabaster::baseline_shapes(), &curvature};
+    return &basis;
+  }
   alabaster::ProbeTarget target() const { return {&rays, &mesh, 0, {}}; }
 
   alabaster::TriangleMesh mesh;
@@ -31,6 +37,8 @@ struct Body {
   alabaster::RayScene rays;
   alabaster::ChordPlacement placement;
   alabaster::ProjectedChordPlacement projected;  // always by queries
+  alabaster::CurvatureField curvature;
+  alabaster::ShapeBasis basis;
 };
 
 /// Points uniform over the mesh.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "bssrdf/basis.h"
 #include "bssrdf/body.h"
 #include "core/rng.h"
 #include "core/statistics.h"
@@ -94,20 +95,28 @@ TEST_CASE("one entry, and all entries, are unbiased for the integral over the su
     const char* name;
     TriangleMesh mesh;
     Rgb mean, amplitude;
+    Basis basis = Basis::half_space;
   };
   std::vector<Case> cases;
   cases.push_back({"sphere", make_sphere(2, 20), Rgb(0.7, 0.9, 0.5), Rgb(0.25, 0.09, 0.2)});
+  cases.push_back(
+      {"sphere with its shape", make_sphere(2, 20), Rgb(0.7, 0.9, 0.5), Rgb(0.25, 0.09, 0.2), Basis::shape});
+  cases.push_back(
+      {"slab of 2 with its shape", make_slab(9, 2, 6), Rgb(0.5, 0.9, 0.99), Rgb(0), Basis::shape});
+  cases.push_back({"torus with its shape", make_torus(3, 1, 24), Rgb(0.5, 0.9, 0.99), Rgb(0), Basis::shape});
   cases.push_back({"folded sheet", make_folded_sheet(6, 1.2, 0.2, 10), Rgb(0.8), Rgb(0.18)});
   cases.push_back({"sphere of 1 at 0.999", make_sphere(1, 20), Rgb(0.999), Rgb(0)});
   cases.push_back({"slab of 1 at 0.999", make_slab(12, 1, 6), Rgb(0.999), Rgb(0)});
   const int tests = 2 * static_cast<int>(cases.size() * std::size(all_models));
   for (const Case& c : cases) {
-    const Body body(c.mesh);
+    Body body(c.mesh);
     const CosineAlbedo albedo(c.mean, c.amplitude, {2, 1});
-    const BssrdfMedium medium{&profile, Rgb(1, 1.5, 0.8), &albedo};
+    const BssrdfMedium medium{&profile, Rgb(1, 1.5, 0.8), &albedo,
+                              c.basis == Basis::shape ? body.shape() : nullptr};
     BssrdfOptions options;
     options.placement = &body.placement;
     for (const char* name : all_models) {
+      if (c.basis == Basis::shape && std::string_view(name).find(':') != std::string_view::npos) continue;
       const auto model = make_bssrdf(name, medium, options);
       const BssrdfPoint exit = medium.point(points_on(body.mesh, 1, 3).front());
       const auto irradiance = [](const Vec3& p) { return 1 + 0.5 * std::sin(p.x + 2 * p.y) * std::cos(p.z); };

@@ -121,7 +121,7 @@ TEST_CASE("wrong options end with code 1, one line, and no file") {
       {"--model", "magic"},
       {"--integrator", "planar"},
       {"--integrator", "nonsense"},
-      {"--basis", "shape"},
+      {"--basis", "sphere"},
       {"--time", "-1"},
       {"--exposure", "nan"},
       {"--mean-free-path", "wide"},

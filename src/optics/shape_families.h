@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/rgb.h"
+#include "optics/shape_table.h"
+
+namespace alabaster {
+
+/// What the families of shapes are told of a pair of points. Lengths in any unit; sigma_t converts.
+struct PairShape {
+  double distance = 0;           // chord
+  double curvature = 0;          // of the ball (positive) or cavity (negative) that the pair lies on
+  double inverse_thickness = 0;  // of the slab; 0: nothing behind
+  double lateral = 0;            // distance along the slab, for its far side
+  double sphericity = 0;         // [0, 1]: 0 a slab, 1 a ball
+  double far = 0;                // [0, 1]: 0 both points on one side of the slab, 1 on opposite sides
+};
+
+/// Correction factors of curved and thin bodies over the half-space basis, by interpolation in a ShapeTable:
+/// linear in log size (after a spline has halved its steps), log distance and the position of the albedo.
+/// Exactly 1 where curvature and inverse thickness are below 1e-5 per mean free path, and on slabs thicker
+/// than ten diffusion lengths; reached continuously. Immutable and thread-safe.
+class ShapeFamilies {
+ public:
+  /// Of curvature and inverse thickness, per mean free path: what counts as flat.
+  static constexpr double flat = 1e-5;
+
+  explicit ShapeFamilies(const ShapeTable& table);
+
+  double g() const { return g_; }
+  double eta() const { return eta_; }
+  /// S of the shape over S of the half-space, per channel. `sigma_t` in the inverse of the pair's unit.
+  Rgb factor(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
+  /// The same in one channel for one family: `size` a radius or thickness and `distance` a chord (balls,
+  /// cavities) or lateral distance (slabs), mean free paths.
+  double factor(ShapeFamily family, double size, double distance, double albedo) const;
+
+ private:
+  struct Lookup;
+  const std::vector<float>& table(ShapeFamily family) const {
+    return tables_[static_cast<std::size_t>(family)];
+  }
+
+  double g_, eta_;
+  std::array<std::vector<float>, ShapeGrid::family_count> tables_;  // [size, flat first][node][row]
+};
+
+/// The table of the baseline, g = 0.3, eta = 1.5, compiled into the program.
+const ShapeTable& baseline_shape_table();
+const ShapeFamilies& baseline_shapes();
+
+}  // namespace alabaster
