@@ -118,7 +118,7 @@ std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t 
                                                                        std::vector<uint8_t> boundary) const {
   if (options_.transport == Transport::bssrdf)
     return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
-                                             options_.basis);
+                                             options_.basis, options_.placement);
   for (const Light& light : scene_.lights)
     if (std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
         std::holds_alternative<DirectionalLight>(light))

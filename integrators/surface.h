@@ -28,6 +28,7 @@ struct SurfaceOptions {
   std::string model = "composite";  // of Transport::bssrdf, see make_bssrdf()
   Basis basis = Basis::half_space;  // of that model
   VolumeWalkOptions walk;           // of Transport::volume and Transport::walk; which albedo is theirs to say
+  std::string placement = "chord";  // of its kernel, see make_placement()
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;
   bool environment_visible = true;  // to camera rays

@@ -113,6 +113,7 @@ SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scen
   options.model = settings.model;
   options.basis = settings.basis == "shape" ? Basis::shape : Basis::half_space;
   options.walk = settings.walk;
+  options.placement = settings.placement;
   options.depth = settings.depth;
   options.environment_visible = scene.environment_visible && !settings.load.hide_environment;
   return options;

@@ -98,6 +98,12 @@ void set_closest_point(RenderSettings& s, const Value& v) {
   s.walk.closest_point = v.text == "exact" ? ClosestPointMode::exact : ClosestPointMode::cached;
 }
 
+void set_placement(RenderSettings& s, const Value& v) {
+  if (v.text != "chord" && v.text != "arc" && v.text != "projected-chord" && v.text != "straightest")
+    v.refuse("is not known; use chord, arc, projected-chord or straightest");
+  s.placement = v.text;
+}
+
 void set_sampler(RenderSettings& s, const Value& v) {
   try {
     s.sampler = sampler_kind_from_name(v.text);
@@ -128,6 +134,8 @@ const std::vector<Option>& options() {
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
       {{"basis", "NAME", "half-space (the default) or shape", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
+      {{"basis", "NAME", "half-space", true}, set_basis},
+      {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},
       {{"size", "WxH", "pixels of the whole image (512x512)", true}, set_size},
       {{"crop", "X0,Y0,X1,Y1", "render this part only, pixels from the top left", true}, set_crop},

@@ -11,6 +11,7 @@
 
 #include "optics/profile_store.h"
 #include "texture/material_map.h"
+#include "texture/seam_gutters.h"
 #include "texture/surface_albedo.h"
 #include "texture/vertex_albedo.h"
 
@@ -184,9 +185,10 @@ class AlbedoBuilder {
       coverage = texel_coverage(object.mesh,
                                 mapping.uv_set == 0 ? object.atlas : UvAtlas(object.mesh, mapping.uv_set),
                                 triangles, mapping, texels->width, texels->height);
-    const AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
+    AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
                                               inversion(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
+    if (!everywhere) fill_gutters(object.mesh, triangles, mapping, albedo.texels, coverage);
     return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);
   }
 
