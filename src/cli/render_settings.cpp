@@ -134,7 +134,6 @@ const std::vector<Option>& options() {
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
       {{"basis", "NAME", "half-space (the default) or shape", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
-      {{"basis", "NAME", "half-space", true}, set_basis},
       {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},
       {{"size", "WxH", "pixels of the whole image (512x512)", true}, set_size},

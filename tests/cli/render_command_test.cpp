@@ -122,6 +122,7 @@ TEST_CASE("wrong options end with code 1, one line, and no file") {
       {"--integrator", "planar"},
       {"--integrator", "nonsense"},
       {"--basis", "sphere"},
+      {"--placement", "string"},
       {"--time", "-1"},
       {"--exposure", "nan"},
       {"--mean-free-path", "wide"},
