@@ -76,6 +76,9 @@ json to_json(const Metrics& m) {
           {"mean_bias", m.mean_bias},
           {"mean_abs_log_ratio", m.mean_abs_log_ratio},
           {"kept", m.kept},
+          {"bias_interval", optional(m.bias_interval)},
+          {"mean_bias_interval", optional(m.mean_bias_interval)},
+          {"log_interval", optional(m.log_interval)},
           {"rel_mse", m.rel_mse},
           {"mean_a", m.mean_a},
           {"mean_b", m.mean_b},
@@ -92,10 +95,14 @@ void print(const Metrics& m) {
     return v ? fmt::format("{:.5g}", *v) : "unknown";
   };
   line("rmse_over_rms", number(m.rmse_over_rms), "error over the reference's root mean square");
-  line("bias", number(m.bias), "the same without noise");
+  const auto interval = [](const std::optional<double>& v, const char* meaning) {
+    return v ? fmt::format("+- {:.2g} ({})", *v, meaning) : std::string(meaning);
+  };
+  line("bias", number(m.bias), interval(m.bias_interval, "the same without noise").c_str());
   line("noise", number(m.noise), "noise of both pictures");
-  line("mean_bias", number(m.mean_bias), "mean(A) / mean(B) - 1");
-  line("mean_abs_log_ratio", number(m.mean_abs_log_ratio), "mean |ln(A / B)|");
+  line("mean_bias", number(m.mean_bias), interval(m.mean_bias_interval, "mean(A) / mean(B) - 1").c_str());
+  line("mean_abs_log_ratio", number(m.mean_abs_log_ratio),
+       interval(m.log_interval, "mean |ln(A / B)|").c_str());
   line("kept", number(m.kept), "share of values it could use; below 0.95 it means nothing");
   line("rel_mse", number(m.rel_mse), "relative mean squared error");
   line("mean_a", number(m.mean_a), "");

@@ -13,7 +13,7 @@ namespace {
 
 struct ValidateSettings {
   ValidationOptions options;
-  std::string quality = "quick", output;
+  std::string quality = "quick", output, cache;
   int threads = 0;
 };
 
@@ -21,7 +21,8 @@ void run(ValidateSettings& settings) {
   set_thread_count(settings.threads);
   settings.options.quality = quality_from_name(settings.quality);
   settings.options.output = settings.output;
-  const ValidationResult result = validate_planar(settings.options);
+  settings.options.cache = settings.cache;
+  const ValidationResult result = validate(settings.options);
   if (result.cancelled) {
     say("stopped; what was finished is written");
     set_exit_code(130);
@@ -34,20 +35,22 @@ void run(ValidateSettings& settings) {
 void add_validate_command(CLI::App& app) {
   auto settings = std::make_shared<ValidateSettings>();
   CLI::App* command = app.add_subcommand(
-      "validate", "Measure every model on flat scenes against the volumetric reference and write a report");
+      "validate", "Measure every model against the volumetric reference and write a report");
   command
       ->add_option("--scenes", settings->options.scenes,
-                   "Scenes or sets, separated by commas: planar, stripes1, stripes1@45, stripes1@radiosity, "
-                   "MY.json ...")
+                   "Scenes or sets, separated by commas: planar (the default), mesh, stripes1, stripes1@45, "
+                   "stripes1@radiosity, blob, FLAT.json, MODEL.glb, SCENE.json ...")
       ->delimiter(',');
   command
-      ->add_option(
-          "--models", settings->options.models,
-          "Models, separated by commas: composite, composite:symmetric, aggregate:0.5, composite:uniform ...")
+      ->add_option("--models", settings->options.models,
+                   "Models, separated by commas; flat: composite, composite:symmetric, aggregate:0.5, "
+                   "composite:uniform ...; meshes: composite+half-space, walk ...")
       ->delimiter(',');
   command->add_option("--quality", settings->quality, "quick (minutes) or full (an hour)")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for the report")->required();
+  command->add_option("--cache", settings->cache,
+                      "Folder of converged references of meshes (the user's cache)");
   command->add_option("--seed", settings->options.seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--threads", settings->threads, "Number of threads; 0: all cores")
       ->capture_default_str();

@@ -21,6 +21,11 @@ struct Samples {
   std::vector<double> a, b, variance_a, variance_b;  // variances empty where unknown
   std::size_t pixels = 0;
   bool finite = true;
+  bool grey = true;  // the channels of a are copies of one
+
+  bool has_variances() const { return !variance_a.empty() && !variance_b.empty(); }
+  /// How many values repeat each independent one.
+  double repeats() const { return grey ? 3 : 1; }
 };
 
 ColourChannels colour_of(const Image& image, const std::string& name) {
@@ -51,6 +56,7 @@ Samples collect(const Image& a, const Image& b, const CompareOptions& options, c
         continue;
       }
       ++samples.pixels;
+      samples.grey &= va.r == va.g && va.g == va.b;
       for (int c = 0; c < 3; ++c) {
         samples.a.push_back(va[c]);
         samples.b.push_back(vb[c]);
@@ -81,10 +87,12 @@ double fit_scale(Samples& samples) {
   return scale;
 }
 
+constexpr double two_sided_95 = 1.96;
+
 void add_log_ratio(const Samples& samples, Metrics& metrics) {
   const double cap = std::log(1000.0);
   const double largest = *std::max_element(samples.b.begin(), samples.b.end());
-  double sum = 0;
+  double sum = 0, variance = 0;
   std::size_t count = 0, bright = 0, bright_kept = 0;
   for (std::size_t i = 0; i < samples.b.size(); ++i) {
     const double a = samples.a[i], b = samples.b[i];
@@ -97,9 +105,32 @@ void add_log_ratio(const Samples& samples, Metrics& metrics) {
     if (!keep) continue;
     ++count;
     sum += a > 0 ? std::min(cap, std::abs(std::log(a / b))) : cap;
+    if (samples.has_variances())
+      variance += (a > 0 ? samples.variance_a[i] / (a * a) : 0) + samples.variance_b[i] / (b * b);
   }
   metrics.mean_abs_log_ratio = count > 0 ? sum / static_cast<double>(count) : not_a_number;
+  if (samples.has_variances() && count > 0)
+    metrics.log_interval =
+        two_sided_95 * std::sqrt(samples.repeats() * variance) / static_cast<double>(count);
   metrics.kept = bright > 0 ? static_cast<double>(bright_kept) / static_cast<double>(bright) : 0;
+}
+
+// The intervals of bias and mean_bias. `power` is the mean square of b.
+void add_intervals(const Samples& samples, double power, Metrics& metrics) {
+  double variance = 0, spread = 0;
+  for (std::size_t i = 0; i < samples.a.size(); ++i) {
+    const double d = samples.a[i] - samples.b[i], v = samples.variance_a[i] + samples.variance_b[i];
+    variance += v;
+    // Variance of d^2 where d is normal around its mean: 4 mean^2 v + 2 v^2, mean^2 estimated by d^2 - v.
+    spread += std::max(0.0, 4 * d * d * v - 2 * v * v);
+  }
+  const auto count = static_cast<double>(samples.a.size());
+  const double x_interval = two_sided_95 * std::sqrt(samples.repeats() * spread) / (count * power);
+  // d sqrt(x) = dx / (2 sqrt(x)), but no more than sqrt(dx) where x is lost in it.
+  metrics.bias_interval =
+      std::min(x_interval / (2 * std::max(std::abs(*metrics.bias), 1e-12)), std::sqrt(x_interval));
+  metrics.mean_bias_interval =
+      two_sided_95 * std::sqrt(samples.repeats() * variance) / (count * metrics.mean_b);
 }
 
 }  // namespace
@@ -130,11 +161,12 @@ Metrics compare_images(const Image& a, const Image& b, const CompareOptions& opt
   metrics.rel_mse = relative / count;
   metrics.rmse_over_rms = std::sqrt(over_power(squared));
   metrics.mean_bias = metrics.mean_a == metrics.mean_b ? 0 : metrics.mean_a / metrics.mean_b - 1;
-  if (!samples.variance_a.empty() && !samples.variance_b.empty()) {
+  if (samples.has_variances()) {
     const double variance = mean(samples.variance_a) + mean(samples.variance_b);
     const double x = over_power(squared - variance);
     metrics.bias = std::copysign(std::sqrt(std::abs(x)), x);
     metrics.noise = std::sqrt(over_power(variance));
+    if (power > 0) add_intervals(samples, power, metrics);
   }
   add_log_ratio(samples, metrics);
   return metrics;

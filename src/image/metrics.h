@@ -21,6 +21,9 @@ struct Metrics {
   /// mean |ln(a / b)|, capped at ln 1000, where b exceeds ten of its own standard errors (where it is
   /// positive, when b has no variance). Not to be used when kept < 0.95.
   double mean_abs_log_ratio = 0;
+  /// Half-widths of 95 % intervals of bias, mean_bias and mean_abs_log_ratio. Nothing when a variance is
+  /// missing.
+  std::optional<double> bias_interval, mean_bias_interval, log_interval;
   double kept = 0;     // of the values above 1e-4 of the largest: the share used above
   double rel_mse = 0;  // mean((a - b)^2 / (b^2 + 0.01 mean(b)^2))
   double mean_a = 0, mean_b = 0;

@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "core/error.h"
 #include "core/progress.h"
+#include "core/user_cache.h"
 #include "optics/bake.h"
 #include "optics/mixture_profile.h"
 #include "optics/shape_bake.h"
@@ -47,14 +47,6 @@ void check(const ProfileRequest& request) {
     throw InputError(fmt::format("g = {}: outside [-0.99, 0.99]", request.g));
   if (!(request.eta >= 1 && request.eta <= 4))
     throw InputError(fmt::format("eta = {}: outside [1, 4]", request.eta));
-}
-
-fs::path cache_folder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && *cache == '/') return fs::path(cache) / "alabaster";
-  const char* home = std::getenv("HOME");
-  if (home != nullptr && *home != '\0') return fs::path(home) / ".cache" / "alabaster";
-  return fs::temp_directory_path() / "alabaster";
 }
 
 }  // namespace
@@ -176,7 +168,7 @@ std::shared_ptr<const ProfileTable> ProfileStore::get(const ProfileRequest& requ
 namespace {
 
 ProfileStore& store_of_user() {
-  static ProfileStore store(cache_folder(), quick_photons);
+  static ProfileStore store(user_cache_folder(), quick_photons);
   return store;
 }
 

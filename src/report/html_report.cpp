@@ -26,7 +26,8 @@ thead th { background: var(--soft); }
 .scroll { overflow-x: auto; }
 .row { display: flex; flex-wrap: wrap; gap: 1rem; margin: 1rem 0; }
 figure { margin: 0; }
-.row figure { flex: 0 1 auto; }
+.row figure { flex: 0 1 auto; min-width: 0; }
+.row figcaption { max-width: 22rem; overflow-wrap: anywhere; }
 figcaption { font-size: .9rem; margin-top: .2rem; }
 img { max-width: 100%; height: auto; }
 .pixels { image-rendering: pixelated; }
@@ -80,8 +81,8 @@ document.querySelectorAll('.compare').forEach(function (box) {
 )js";
 
 /// Small pictures are shown larger, in whole multiples.
-int display_width(int width) {
-  return width * std::max(1, 320 / std::max(1, width));
+int display_width(int width, int wanted) {
+  return width * std::max(1, wanted / std::max(1, width));
 }
 
 std::string select_list(const std::string& id, const std::string& label, const std::vector<int>& handles,
@@ -162,17 +163,23 @@ void HtmlReport::table(const ReportTable& table) {
            "\"><table>\n<caption>" + escape_html(table.caption) + "</caption>\n<thead><tr>";
   for (const std::string& cell : table.header) body_ += "<th scope=\"col\">" + escape_html(cell) + "</th>";
   body_ += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const auto& row = table.rows[r];
     body_ += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i)
-      body_ += i == 0 ? "<th scope=\"row\">" + escape_html(row[i]) + "</th>"
-                      : "<td>" + escape_html(row[i]) + "</td>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string text = escape_html(row[i]);
+      const bool best = i > 0 && r < table.best.size() && table.best[r] == i;
+      body_ += i == 0 ? "<th scope=\"row\">" + text + "</th>"
+               : best ? "<td><strong>" + text + "</strong></td>"
+                      : "<td>" + text + "</td>";
+    }
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
 }
 
-std::vector<int> HtmlReport::images(const std::vector<ReportImage>& pictures, const std::string& caption) {
+std::vector<int> HtmlReport::images(const std::vector<ReportImage>& pictures, const std::string& caption,
+                                    int width) {
   std::vector<int> handles;
   body_ += "<div class=\"row\">\n";
   for (const ReportImage& picture : pictures) {
@@ -181,7 +188,7 @@ std::vector<int> HtmlReport::images(const std::vector<ReportImage>& pictures, co
     body_ += fmt::format(
         "<figure><img id=\"picture-{}\" class=\"pixels\" width=\"{}\" alt=\"{}\" "
         "src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
-        handle, display_width(picture.pixels.width),
+        handle, display_width(picture.pixels.width, width),
         escape_html(picture.alt.empty() ? picture.label : picture.alt), base64(png.data(), png.size()),
         escape_html(picture.label));
     labels_.push_back(picture.label);
@@ -193,22 +200,23 @@ std::vector<int> HtmlReport::images(const std::vector<ReportImage>& pictures, co
   return handles;
 }
 
-void HtmlReport::slider(const std::vector<int>& handles, const std::string& caption) {
-  assert(handles.size() >= 2);
+void HtmlReport::slider(const std::vector<int>& handles, const std::string& caption, std::size_t left,
+                        std::size_t right) {
+  assert(handles.size() >= 2 && left < handles.size() && right < handles.size());
   const int id = sliders_++;
   int width = 0;
   for (const int handle : handles)
-    width = std::max(width, display_width(static_cast<int>(sizes_[static_cast<std::size_t>(handle)].x)));
+    width = std::max(width, display_width(static_cast<int>(sizes_[static_cast<std::size_t>(handle)].x), 480));
   body_ += fmt::format(
       "<figure class=\"compare\" hidden><figcaption>{}</figcaption>\n<div class=\"controls\">{} {} ",
-      escape_html(caption), select_list(fmt::format("left-{}", id), "Left", handles, labels_, 0),
-      select_list(fmt::format("right-{}", id), "Right", handles, labels_, 1));
+      escape_html(caption), select_list(fmt::format("left-{}", id), "Left", handles, labels_, left),
+      select_list(fmt::format("right-{}", id), "Right", handles, labels_, right));
   body_ += fmt::format(
       "<label for=\"split-{}\">Divide at</label> <input id=\"split-{}\" type=\"range\" min=\"0\" max=\"100\" "
       "step=\"0.5\" value=\"50\"></div>\n"
       "<div class=\"stage\" style=\"width:{}px\"><img class=\"right pixels\" alt=\"\">"
       "<img class=\"left pixels\" alt=\"\"><div class=\"bar\"></div></div></figure>\n",
-      id, id, 2 * width);
+      id, id, width);
 }
 
 void HtmlReport::chart(const Chart& chart, const std::string& alt) {

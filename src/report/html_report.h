@@ -20,6 +20,7 @@ struct ReportTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  // the first column heads its row
+  std::vector<std::size_t> best{};  // by row: the column to emphasise; 0: none. Empty: none anywhere
 };
 
 /// A self-contained page: pictures and charts are inside the file, nothing is fetched. Reads without
@@ -33,10 +34,14 @@ class HtmlReport {
   void paragraph(const std::string& text);
   void list(const std::vector<std::string>& items);
   void table(const ReportTable& table);
-  /// Pictures side by side. Returns a handle for each, for sliders.
-  std::vector<int> images(const std::vector<ReportImage>& pictures, const std::string& caption = {});
-  /// A slider between any two of pictures that stand on the page already (handles of images()).
-  void slider(const std::vector<int>& handles, const std::string& caption);
+  /// Pictures side by side, shown about `width` pixels wide (small ones enlarged in whole multiples). Returns
+  /// a handle for each, for sliders.
+  std::vector<int> images(const std::vector<ReportImage>& pictures, const std::string& caption = {},
+                          int width = 320);
+  /// A slider between any two of pictures that stand on the page already (handles of images()); at first it
+  /// shows the places `left` and `right` of `handles`.
+  void slider(const std::vector<int>& handles, const std::string& caption, std::size_t left = 0,
+              std::size_t right = 1);
   void chart(const Chart& chart, const std::string& alt);
 
   std::string html() const;

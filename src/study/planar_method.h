@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bssrdf/bssrdf.h"
-#include "image/image.h"
 #include "integrators/planar.h"
+#include "study/method_result.h"
 
 namespace alabaster {
 
@@ -23,13 +23,6 @@ struct PlanarMethod {
 
 /// Throws InputError for a name that is none.
 PlanarMethod parse_planar_method(const std::string& name);
-
-/// An image with what it cost.
-struct TimedImage {
-  Image image;  // R G B A, variance.R/.G/.B, samples.Y at least
-  double seconds = 0, cpu_seconds = 0;
-  uint64_t samples = 0;  // of all pixels; paths for the reference
-};
 
 /// The method's image at `spp` Sobol samples per pixel.
 TimedImage render_planar(const PlanarScene& scene, const PlanarMethod& method, const ProfileTable& profile,

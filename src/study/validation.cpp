@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/atomic_file.h"
 #include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -39,6 +38,11 @@ ValidationBudget budget(Quality quality) {
   return b;
 }
 
+MeshBudget mesh_budget(Quality quality) {
+  if (quality == Quality::full) return {256, 0.02, 1u << 15, 1024};
+  return {};
+}
+
 const std::vector<double>& aggregate_widths() {
   static const std::vector<double> widths{0, 0.25, 0.5, 0.75, 1, 1.5, 2, 3};
   return widths;
@@ -51,7 +55,7 @@ MethodResult measure(const PlanarScene& scene, const PlanarMethod& method, const
   MethodResult result;
   result.model = method.name;
   result.render = render_planar(scene, method, profile, spp, seed);
-  result.errors = image_errors(result.render.image, reference);
+  result.errors = compare_images(result.render.image, reference);
   return result;
 }
 
@@ -151,29 +155,33 @@ void report_row(const SceneResult& result) {
   say(line);
 }
 
+void report_row(const MeshSceneResult& result) {
+  if (result.methods.empty()) return;
+  std::string line = fmt::format("{}: reference {:.0f} CPU s, noise {:.3f}", result.name,
+                                 result.reference.cpu_seconds, noise_of(result.reference.image));
+  for (const MeshMethodResult& m : result.methods)
+    line += fmt::format(", {} {:.3f} (shape {:.3f})", m.model, *m.errors.bias, *m.shape.bias);
+  say(line);
+}
+
 class ValidationRun {
  public:
   ValidationRun(const ValidationOptions& options)
       : options_(options),
         budget_(budget(options.quality)),
-        scenes_(planar_scenes(options.scenes, budget_.resolution)) {
-    methods_ = parse_all(options.models.empty() ? standard_models : options.models);
+        mesh_budget_(options.mesh_budget.value_or(mesh_budget(options.quality))),
+        store_(options.cache.empty() ? default_reference_folder() : options.cache) {
+    std::vector<std::string> flat, meshes;
+    for (const std::string& name : options.scenes) (is_mesh_scene_name(name) ? meshes : flat).push_back(name);
+    if (!flat.empty()) scenes_ = planar_scenes(flat, budget_.resolution);
+    if (!meshes.empty()) meshes_ = expand_mesh_scenes(meshes);
+    choose_methods();
   }
 
   ValidationResult run() {
     const double wall = wall_seconds(), cpu = cpu_seconds();
-    for (const PlanarScene& scene : scenes_) {
-      if (cancellation_requested()) break;
-      progress_.update(fraction_done(), scene.name);
-      // Someone who asks for certain models wants those alone.
-      const bool sweep = options_.models.empty();
-      SceneResult measured =
-          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed);
-      if (cancellation_requested()) break;  // its images are unfinished
-      result_.scenes.push_back(std::move(measured));
-      report_row(result_.scenes.back());
-    }
-    if (options_.models.empty()) measure_kernels_and_footprints();
+    measure_flat_scenes();
+    measure_meshes();
     result_.cancelled = cancellation_requested();
     result_.seconds = wall_seconds() - wall;
     result_.cpu_seconds = cpu_seconds() - cpu;
@@ -181,6 +189,43 @@ class ValidationRun {
   }
 
  private:
+  void choose_methods() {
+    // Someone who asks for certain models wants those alone.
+    if (options_.models.empty()) {
+      methods_ = parse_all(standard_models);
+      mesh_methods_ = standard_mesh_methods();
+      return;
+    }
+    if (!scenes_.empty()) methods_ = parse_all(options_.models);
+    if (meshes_.empty()) return;
+    for (const std::string& name : options_.models) mesh_methods_.push_back(parse_mesh_method(name));
+  }
+
+  void measure_flat_scenes() {
+    for (const PlanarScene& scene : scenes_) {
+      if (cancellation_requested()) return;
+      progress_.update(fraction_done(), scene.name);
+      const bool sweep = options_.models.empty();
+      SceneResult measured =
+          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed);
+      if (cancellation_requested()) return;  // its images are unfinished
+      result_.scenes.push_back(std::move(measured));
+      report_row(result_.scenes.back());
+    }
+    if (options_.models.empty() && !scenes_.empty()) measure_kernels_and_footprints();
+  }
+
+  void measure_meshes() {
+    for (const std::string& scene : meshes_) {
+      if (cancellation_requested()) return;
+      progress_.update(fraction_done(), scene);
+      MeshSceneResult measured = measure_mesh(scene, mesh_methods_, mesh_budget_, store_, options_.seed);
+      if (cancellation_requested()) return;
+      result_.meshes.push_back(std::move(measured));
+      report_row(result_.meshes.back());
+    }
+  }
+
   void measure_kernels_and_footprints() {
     const std::vector<PlanarMethod> rivals = parse_all(rival_models);
     for (const auto& [name, exit] : kernel_points())
@@ -196,23 +241,28 @@ class ValidationRun {
   }
 
   double fraction_done() const {
-    return static_cast<double>(result_.scenes.size()) / (1.1 * static_cast<double>(scenes_.size()));
+    return static_cast<double>(result_.scenes.size() + result_.meshes.size()) /
+           (1.1 * static_cast<double>(scenes_.size() + meshes_.size()));
   }
 
   const ValidationOptions& options_;
   ValidationBudget budget_;
+  MeshBudget mesh_budget_;
+  ReferenceStore store_;
   std::vector<PlanarScene> scenes_;
   std::vector<PlanarMethod> methods_;
+  std::vector<std::string> meshes_;
+  std::vector<MeshMethod> mesh_methods_;
   ValidationResult result_;
   Progress progress_{"validating"};
 };
 
 }  // namespace
 
-ValidationResult validate_planar(const ValidationOptions& options) {
+ValidationResult validate(const ValidationOptions& options) {
   ValidationResult result = ValidationRun(options).run();
   write_validation(result, options);
-  write_text_atomically(options.output / "report.html", validation_page(result, options));
+  validation_page(result, options).write(options.output / "report.html");
   return result;
 }
 

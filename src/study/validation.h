@@ -2,11 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "study/footprint.h"
-#include "study/image_errors.h"
+#include "study/mesh_validation.h"
 #include "study/planar_method.h"
 
 namespace alabaster {
@@ -28,13 +29,7 @@ struct ValidationBudget {
   uint64_t map_paths = 4'000'000;  // of a kernel map
 };
 ValidationBudget budget(Quality quality);
-
-/// One method on one scene, compared with the reference.
-struct MethodResult {
-  std::string model;
-  TimedImage render;
-  ImageErrors errors;
-};
+MeshBudget mesh_budget(Quality quality);
 
 /// One flat scene with everything measured on it.
 struct SceneResult {
@@ -63,15 +58,19 @@ KernelMap measure_kernel(const PlanarScene& scene, Vec2 exit, const std::vector<
                          const ProfileTable& profile, const ValidationBudget& budget, uint64_t seed);
 
 struct ValidationOptions {
-  std::vector<std::string> scenes{"planar"};  // ids (also ID@45, ID@75, ID@radiosity), sets, or scene files
-  std::vector<std::string> models;            // empty: every model and variant
+  /// Ids (of flat scenes also ID@45, ID@75, ID@radiosity), sets, flat scene files, models, scene files.
+  std::vector<std::string> scenes{"planar"};
+  std::vector<std::string> models;  // empty: every model and variant
   Quality quality = Quality::quick;
   std::filesystem::path output;
+  std::filesystem::path cache;  // of converged references of meshes; empty: the user's
   uint64_t seed = 1;
+  std::optional<MeshBudget> mesh_budget;  // instead of the quality's
 };
 
 struct ValidationResult {
   std::vector<SceneResult> scenes;
+  std::vector<MeshSceneResult> meshes;
   std::vector<KernelMap> maps;
   std::vector<FootprintOptions> footprint_options;
   std::vector<std::vector<Footprint>> footprints;  // one set per options
@@ -81,6 +80,6 @@ struct ValidationResult {
 
 /// Measures all of it and writes results.json, results.csv, the images as EXR and report.html to
 /// options.output. Throws InputError for names that are none.
-ValidationResult validate_planar(const ValidationOptions& options);
+ValidationResult validate(const ValidationOptions& options);
 
 }  // namespace alabaster

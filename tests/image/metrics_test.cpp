@@ -135,3 +135,35 @@ TEST_CASE("missing variances, NaN, masks, scale and sizes") {
   CHECK(black.rel_mse == 0);
   CHECK(std::isnan(black.mean_abs_log_ratio));
 }
+
+TEST_CASE("the 95 % intervals of bias and mean cover the truth as often as they say") {
+  int covered = 0, mean_covered = 0;
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    Image a = constant(64, 1.05, 0.011025), b = constant(64, 1, 0.0004);
+    add_noise(a, 2 * seed);
+    add_noise(b, 2 * seed + 1);
+    const Metrics m = compare_images(a, b);
+    covered += std::abs(*m.bias - 0.05) < *m.bias_interval;
+    mean_covered += std::abs(m.mean_bias - 0.05) < *m.mean_bias_interval;
+  }
+  // 95 of 100 expected; binomial at 1e-4.
+  CHECK(covered >= 86);
+  CHECK(mean_covered >= 86);
+  CHECK(covered < 100);
+}
+
+TEST_CASE("a grey picture knows a third of what its three channels seem to say") {
+  Image a = constant(64, 1.2, 0.01), b = constant(64, 1, 0.0001);
+  const Metrics grey = compare_images(a, b);
+  a.at(0, 0, 0) += 1e-6f;
+  const Metrics colour = compare_images(a, b);
+  CHECK(*grey.mean_bias_interval == Approx(std::sqrt(3) * *colour.mean_bias_interval));
+  CHECK(*grey.bias_interval > *colour.bias_interval);
+}
+
+TEST_CASE("without variances there are no intervals") {
+  const Metrics m = compare_images(constant(4, 1.2), constant(4, 1));
+  CHECK_FALSE(m.bias_interval);
+  CHECK_FALSE(m.mean_bias_interval);
+  CHECK_FALSE(m.log_interval);
+}

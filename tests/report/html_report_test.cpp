@@ -25,7 +25,7 @@ HtmlReport example() {
                                       {Pixels8(4, 3, 4), "factorized \"f\"", ""}});
   report.slider(handles, "Any two");
   report.heading("Second");
-  report.table({"Errors", {"model", "bias"}, {{"composite", "0.05"}, {"a<b", "0.1"}}});
+  report.table({"Errors", {"model", "bias"}, {{"composite", "0.05"}, {"a<b", "0.1"}}, {1, 0}});
   report.chart({"Pareto", "s", "error", true, true, {{"m", {1, 2}, {3, 4}}}}, "Error falls with time");
   report.list({"one", "two"});
   return report;
@@ -47,6 +47,12 @@ TEST_CASE("a report is one file that fetches nothing and escapes what it is give
   const std::regex outside(R"re((src|href)="(?!data:|#))re");
   CHECK_FALSE(std::regex_search(html, outside));
   CHECK(html.find("http") == std::string::npos);
+}
+
+TEST_CASE("the best cell of a row is emphasised") {
+  const std::string html = example().html();
+  CHECK(count(html, "<strong>") == 1);
+  CHECK(html.find("<td><strong>0.05</strong></td>") != std::string::npos);
 }
 
 TEST_CASE("every picture has an alternative text and every control a label") {

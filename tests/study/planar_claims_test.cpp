@@ -22,15 +22,15 @@ ValidationBudget small_budget() {
 }
 
 /// The errors of a scene by model; "aggregate" is the best width of the sweep.
-std::map<std::string, ImageErrors> errors_on(const std::string& name) {
+std::map<std::string, Metrics> errors_on(const std::string& name) {
   const PlanarScene scene = planar_scenes({name}, small_budget().resolution).front();
   std::vector<PlanarMethod> methods;
   for (const char* model : {"homogeneous", "factorized", "composite"})
     methods.push_back(parse_planar_method(model));
   const SceneResult result = measure_scene(scene, methods, baseline_profile(), small_budget(), true, 1);
-  std::map<std::string, ImageErrors> errors;
+  std::map<std::string, Metrics> errors;
   for (const MethodResult& m : result.methods) errors[m.model] = m.errors;
-  ImageErrors best = result.sweep.front().errors;
+  Metrics best = result.sweep.front().errors;
   for (const MethodResult& m : result.sweep)
     if (m.errors.bias < best.bias) best = m.errors;
   errors["aggregate"] = best;
@@ -38,8 +38,8 @@ std::map<std::string, ImageErrors> errors_on(const std::string& name) {
 }
 
 /// Whether the error of a is below that of b by more than both 95 % intervals.
-bool clearly_below(const ImageErrors& a, const ImageErrors& b) {
-  return a.bias + a.bias_interval < b.bias - b.bias_interval;
+bool clearly_below(const Metrics& a, const Metrics& b) {
+  return *a.bias + *a.bias_interval < *b.bias - *b.bias_interval;
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ TEST_CASE("straight down, the composite model beats the factorized and the best 
           "[slow]") {
   for (const char* name : {"stripes1", "stripes2", "dots"}) {
     auto errors = errors_on(name);
-    INFO(name << ": composite " << errors["composite"].bias << ", factorized " << errors["factorized"].bias
-              << ", best aggregate " << errors["aggregate"].bias);
+    INFO(name << ": composite " << *errors["composite"].bias << ", factorized " << *errors["factorized"].bias
+              << ", best aggregate " << *errors["aggregate"].bias);
     CHECK(clearly_below(errors["composite"], errors["factorized"]));
     CHECK(clearly_below(errors["composite"], errors["aggregate"]));
   }
@@ -59,11 +59,11 @@ TEST_CASE("straight down, the composite model is at most 5 % worse than the bett
   for (const char* name :
        {"floral", "escher", "cork", "logo", "colour_bleeding_x0.25", "colour_bleeding_x1"}) {
     auto errors = errors_on(name);
-    const ImageErrors& composite = errors["composite"];
-    const double rival = std::min(errors["factorized"].bias, errors["aggregate"].bias);
-    INFO(name << ": composite " << composite.bias << " +- " << composite.bias_interval << ", better rival "
+    const Metrics& composite = errors["composite"];
+    const double rival = std::min(*errors["factorized"].bias, *errors["aggregate"].bias);
+    INFO(name << ": composite " << *composite.bias << " +- " << *composite.bias_interval << ", better rival "
               << rival);
-    CHECK(composite.bias - composite.bias_interval < 1.05 * rival);
+    CHECK(*composite.bias - *composite.bias_interval < 1.05 * rival);
   }
 }
 
@@ -86,9 +86,9 @@ TEST_CASE("in radiosity the best aggregate passes the composite model", "[slow]"
 
 TEST_CASE("the factorized model overestimates", "[slow]") {
   for (const char* name : {"stripes1", "stripes2", "escher", "dots"}) {
-    const ImageErrors factorized = errors_on(name)["factorized"];
+    const Metrics factorized = errors_on(name)["factorized"];
     INFO(name << ": " << factorized.mean_bias);
-    CHECK(factorized.mean_bias > factorized.mean_bias_interval);
+    CHECK(factorized.mean_bias > *factorized.mean_bias_interval);
   }
 }
 
@@ -97,10 +97,10 @@ TEST_CASE("the floor of all planar errors is the angular lobe, which radiosity d
   // steeper than T(cos)/(pi c) says; summed over directions only the table's error is left.
   PlanarScene scene = planar_scenes({"constant"}, 50).front();
   const auto bias = [&](const PlanarScene& s) {
-    return measure_scene(s, {parse_planar_method("homogeneous")}, baseline_profile(), small_budget(), false,
-                         1)
-        .methods.front()
-        .errors.bias;
+    return *measure_scene(s, {parse_planar_method("homogeneous")}, baseline_profile(), small_budget(), false,
+                          1)
+                .methods.front()
+                .errors.bias;
   };
   const double straight = bias(scene);
   scene.view.radiosity = true;

@@ -47,15 +47,13 @@ TEST_CASE("alabaster validate writes rows, images and a page that a browser show
     WARN("SKIPPED: chromium is not installed, the page was not opened");
     return;
   }
-  // The slider's pictures are set by the page's script: in the browser's DOM they are no longer the empty
-  // ones.
+  // The slider's pictures are set by the page's script: in the browser's DOM they have a source.
   const std::string dom = (folder / "dom.html").string();
   REQUIRE(std::system(("chromium --headless --no-sandbox --disable-gpu --dump-dom file://" + out +
                        "/report.html > " + dom + " 2>/dev/null")
                           .c_str()) == 0);
   const std::string shown = read_text(dom);
-  CHECK(count(page, "data:image/gif") == 2);
-  CHECK(count(shown, "data:image/gif") == 0);
-  CHECK(count(shown, "inset(0") == count(page, "inset(0") + 1);
+  CHECK(count(shown, "src=\"data:image/png") == count(page, "src=\"data:image/png") + 2);
+  CHECK(count(shown, "inset(0") > 0);
   CHECK(count(shown, "<option") == 6);  // reference and two models on either side
 }
