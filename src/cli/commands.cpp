@@ -17,6 +17,7 @@ void add_all_commands(CLI::App& app) {
   add_render_command(app);
   add_batch_command(app);
   add_validate_command(app);
+  add_chart_command(app);
 }
 
 std::string program_version() {

@@ -21,6 +21,7 @@ void add_batch_command(CLI::App& app);
 std::string program_version();
 void add_validate_command(CLI::App& app);
 void add_profile_command(CLI::App& app);
+void add_chart_command(CLI::App& app);
 
 /// What the process ends with when nothing was thrown; a command sets it when part of its work failed.
 int exit_code();

@@ -49,8 +49,7 @@ void add_validate_command(CLI::App& app) {
   command->add_option("--quality", settings->quality, "quick (minutes) or full (an hour)")
       ->capture_default_str();
   command->add_option("-o,--output", settings->output, "Folder for the report")->required();
-  command->add_option("--cache", settings->cache,
-                      "Folder of converged references of meshes (the user's cache)");
+  command->add_option("--cache", settings->cache, "Folder of converged references (the user's cache)");
   command->add_option("--seed", settings->options.seed, "Seed of all random numbers")->capture_default_str();
   command->add_option("--threads", settings->threads, "Number of threads; 0: all cores")
       ->capture_default_str();

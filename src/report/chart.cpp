@@ -85,8 +85,9 @@ std::string plot_clause(const ChartSeries& series, std::size_t block, std::size_
   const std::size_t style = index % colours.size(), dash = index / colours.size() + index % 3 + 1;
   const char* with = series.line && series.points ? "linespoints" : series.line ? "lines" : "points";
   const std::string look =
-      fmt::format("lc rgb '{}' lw {} pt {} ps 0.9 dt {}", colours[style], series.emphasised ? 3.5 : 1.8,
-                  point_types[style], series.emphasised ? 1 : dash);
+      series.emphasised
+          ? fmt::format("lc rgb '#B0B0B0' lw 6 pt {} ps 0.9 dt 1", point_types[style])
+          : fmt::format("lc rgb '{}' lw 1.8 pt {} ps 0.9 dt {}", colours[style], point_types[style], dash);
   std::string clause;
   if (!series.y_error.empty())  // below the points
     clause = fmt::format("$data{} using 1:2:3:4 with yerrorbars lc rgb '{}' lw 1 ps 0 notitle, ", block,

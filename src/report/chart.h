@@ -12,7 +12,7 @@ struct ChartSeries {
   std::vector<double> x, y;       // of one length
   std::vector<double> y_error{};  // half the error bar, in units of y; empty: none
   bool line = true, points = true;
-  bool emphasised = false;  // drawn thicker (a Pareto front, a reference)
+  bool emphasised = false;  // a broad grey band (a Pareto front, a reference); put it first, below the rest
 };
 
 struct Chart {

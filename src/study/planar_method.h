@@ -28,9 +28,9 @@ PlanarMethod parse_planar_method(const std::string& name);
 TimedImage render_planar(const PlanarScene& scene, const PlanarMethod& method, const ProfileTable& profile,
                          uint32_t spp, uint64_t seed);
 
-/// The volumetric reference until its noise() is at most `noise` and at least the share `known` of the pixels above
-/// 1e-4 of the maximum exceeds ten standard errors (ImageErrors::kept: what the log ratio needs), or `max_paths` are
-/// spent; from the light where it can be.
+/// The volumetric reference until its noise() is at most `noise` and at least the share `known` of the pixels
+/// above 1e-4 of the maximum exceeds ten standard errors (Metrics::kept: what the log ratio needs), or
+/// `max_paths` are spent; from the light where it can be.
 TimedImage render_planar_reference(const PlanarScene& scene, double noise, double known, uint64_t max_paths,
                                    uint64_t seed);
 

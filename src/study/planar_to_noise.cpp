@@ -69,18 +69,6 @@ std::vector<double> pixel_shares(const PlanarIntegrator& integrator, const Plana
   return shares;
 }
 
-double noise_of(const Image& image) {
-  double variance = 0, square = 0;
-  const int pixels = image.width() * image.height();
-  for (const char* channel : {"R", "G", "B"}) {
-    const float* value = image.plane(image.find(channel));
-    const float* its_variance = image.plane(image.find(std::string("variance.") + channel));
-    variance += std::accumulate(its_variance, its_variance + pixels, 0.0);
-    square += std::inner_product(value, value + pixels, value, 0.0);
-  }
-  return square > 0 ? std::sqrt(variance / square) : 0;
-}
-
 /// An image that grows where its shares say.
 class SharedOut {
  public:

@@ -132,6 +132,18 @@ std::optional<TimedImage> ReferenceStore::get(const MeshScene& scene, bool const
   return std::move(stored.render);
 }
 
+TimedImage ReferenceStore::get(const PlanarScene& scene, double noise, double known, uint64_t max_paths,
+                               uint64_t seed) {
+  const fs::path file =
+      folder_ / fmt::format("{}_flat_noise{}_known{}_paths{}_v{}_seed{}.exr", scene_fingerprint(scene), noise,
+                            known, max_paths, reference_version, seed);
+  Stored stored = load(file);
+  if (stored.batches > 0) return std::move(stored.render);
+  stored = {render_planar_reference(scene, noise, known, max_paths, seed), 1, 1};
+  if (!cancellation_requested()) save(file, scene.name, stored);
+  return std::move(stored.render);
+}
+
 fs::path default_reference_folder() {
   return user_cache_folder() / "references";
 }

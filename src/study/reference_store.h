@@ -7,6 +7,7 @@
 
 #include "study/mesh_scene.h"
 #include "study/method_result.h"
+#include "study/planar_method.h"
 
 namespace alabaster {
 
@@ -29,6 +30,9 @@ class ReferenceStore {
   /// `constant` is set (one albedo per object) by walks that need not ask. Its times are those of the whole
   /// image, whenever they were spent. Nothing when a stop was asked for before the first image was ready.
   std::optional<TimedImage> get(const MeshScene& scene, bool constant, const ReferenceGoal& goal);
+
+  /// render_planar_reference(), kept under its arguments.
+  TimedImage get(const PlanarScene& scene, double noise, double known, uint64_t max_paths, uint64_t seed);
 
   std::filesystem::path file_of(const MeshScene& scene, bool constant, uint64_t seed) const;
 

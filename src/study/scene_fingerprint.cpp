@@ -103,4 +103,16 @@ std::string scene_fingerprint(const Scene& scene) {
   return hash.text();
 }
 
+std::string scene_fingerprint(const PlanarScene& scene) {
+  ContentHash hash;
+  hash.add(scene.albedo->width), hash.add(scene.albedo->texels), hash.add(scene.tile);
+  hash.add(scene.medium.mean_free_path), hash.add(scene.medium.g), hash.add(scene.medium.eta);
+  const PlanarLight& light = scene.light;
+  hash.add(light.shape), hash.add(light.centre), hash.add(light.radius), hash.add(light.radiance);
+  const PlanarView& view = scene.view;
+  hash.add(view.centre), hash.add(view.size), hash.add(view.width), hash.add(view.height);
+  hash.add(view.towards), hash.add(view.radiosity);
+  return hash.text();
+}
+
 }  // namespace alabaster

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "integrators/planar_scene.h"
 #include "scene/scene.h"
 
 namespace alabaster {
@@ -10,5 +11,7 @@ namespace alabaster {
 /// first camera could: meshes, textures, media, lights and camera by their bytes, environments and albedo
 /// fields by their values at fixed places.
 std::string scene_fingerprint(const Scene& scene);
+/// The same for a flat scene, view included.
+std::string scene_fingerprint(const PlanarScene& scene);
 
 }  // namespace alabaster

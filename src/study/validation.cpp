@@ -63,10 +63,14 @@ MethodResult measure(const PlanarScene& scene, const PlanarMethod& method, const
 
 SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMethod>& methods,
                           const ProfileTable& profile, const ValidationBudget& budget, bool sweep,
-                          uint64_t seed) {
+                          uint64_t seed, ReferenceStore* store) {
+  const auto reference = [&](const PlanarScene& lit, double noise, double known, uint64_t its_seed) {
+    return store != nullptr ? store->get(lit, noise, known, budget.max_paths, its_seed)
+                            : render_planar_reference(lit, noise, known, budget.max_paths, its_seed);
+  };
   SceneResult result;
   result.scene = scene;
-  result.reference = render_planar_reference(scene, budget.reference_noise, budget.reference_known, budget.max_paths, seed);
+  result.reference = reference(scene, budget.reference_noise, budget.reference_known, seed);
   const Image& truth = result.reference.image;
   for (const PlanarMethod& method : methods)
     result.methods.push_back(measure(scene, method, profile, truth, budget.spp, seed + 1));
@@ -76,7 +80,7 @@ SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMeth
                                      truth, budget.sweep_spp, seed + 2));
   result.constant_albedo = mean_albedo(*scene.albedo);
   const PlanarScene constant = with_constant_albedo(scene, result.constant_albedo);
-  const TimedImage floor = render_planar_reference(constant, budget.floor_noise, 0, budget.max_paths, seed + 3);
+  const TimedImage floor = reference(constant, budget.floor_noise, 0, seed + 3);
   result.floor =
       measure(constant, parse_planar_method("homogeneous"), profile, floor.image, budget.spp, seed + 4);
   return result;
@@ -207,7 +211,7 @@ class ValidationRun {
       progress_.update(fraction_done(), scene.name);
       const bool sweep = options_.models.empty();
       SceneResult measured =
-          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed);
+          measure_scene(scene, methods_, profile_for(scene), budget_, sweep, options_.seed, &store_);
       if (cancellation_requested()) return;  // its images are unfinished
       result_.scenes.push_back(std::move(measured));
       report_row(result_.scenes.back());

@@ -51,9 +51,10 @@ struct KernelMap {
   std::vector<std::pair<std::string, Image>> maps;  // R G B in 1/m^2; the reference first
 };
 
+/// References come from `store` when one is given.
 SceneResult measure_scene(const PlanarScene& scene, const std::vector<PlanarMethod>& methods,
                           const ProfileTable& profile, const ValidationBudget& budget, bool sweep,
-                          uint64_t seed);
+                          uint64_t seed, ReferenceStore* store = nullptr);
 KernelMap measure_kernel(const PlanarScene& scene, Vec2 exit, const std::vector<PlanarMethod>& methods,
                          const ProfileTable& profile, const ValidationBudget& budget, uint64_t seed);
 
@@ -63,7 +64,7 @@ struct ValidationOptions {
   std::vector<std::string> models;  // empty: every model and variant
   Quality quality = Quality::quick;
   std::filesystem::path output;
-  std::filesystem::path cache;  // of converged references of meshes; empty: the user's
+  std::filesystem::path cache;  // of converged references; empty: the user's
   uint64_t seed = 1;
   std::optional<MeshBudget> mesh_budget;  // instead of the quality's
 };
