@@ -26,6 +26,8 @@ class BssrdfTransport final : public SubsurfaceTransport {
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
 
+  const Bssrdf& model() const { return *model_; }
+
  private:
   std::shared_ptr<const ProfileTable> profile_;
   std::shared_ptr<const ShapeFamilies> families_;  // of the shape basis

@@ -5,6 +5,7 @@
 #include "core/cancellation.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "study/response.h"
 #include "study/validation.h"
 
 namespace alabaster {
@@ -13,21 +14,33 @@ namespace {
 
 struct ValidateSettings {
   ValidationOptions options;
-  std::string quality = "quick", output, cache;
+  std::vector<std::string> scenes;  // empty: the default of what is measured
+  std::string what = "images", quality = "quick", output, cache;
   int threads = 0;
 };
+
+void measure_images(ValidateSettings& settings) {
+  if (!settings.scenes.empty()) settings.options.scenes = settings.scenes;
+  const ValidationResult result = validate(settings.options);
+  say(settings.output + "/report.html written after " + format_duration(result.seconds));
+}
+
+void measure_response(ValidateSettings& settings) {
+  settings.options.scenes = settings.scenes.empty() ? response_scenes() : settings.scenes;
+  validate_response(settings.options);
+  say(settings.output + "/response.html written");
+}
 
 void run(ValidateSettings& settings) {
   set_thread_count(settings.threads);
   settings.options.quality = quality_from_name(settings.quality);
   settings.options.output = settings.output;
   settings.options.cache = settings.cache;
-  const ValidationResult result = validate(settings.options);
-  if (result.cancelled) {
+  (settings.what == "response" ? measure_response : measure_images)(settings);
+  if (cancellation_requested()) {
     say("stopped; what was finished is written");
-    set_exit_code(130);
+    set_exit_code(interrupted_exit_code);
   }
-  say(settings.output + "/results.json written after " + format_duration(result.seconds));
 }
 
 }  // namespace
@@ -37,7 +50,14 @@ void add_validate_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "validate", "Measure every model against the volumetric reference and write a report");
   command
-      ->add_option("--scenes", settings->options.scenes,
+      ->add_option(
+          "--what", settings->what,
+          "images: errors of whole images; response: S_V around chosen points of meshes against walks "
+          "from there")
+      ->check(CLI::IsMember({"images", "response"}))
+      ->capture_default_str();
+  command
+      ->add_option("--scenes", settings->scenes,
                    "Scenes or sets, separated by commas: planar (the default), mesh, stripes1, stripes1@45, "
                    "stripes1@radiosity, blob, FLAT.json, MODEL.glb, SCENE.json ...")
       ->delimiter(',');

@@ -31,6 +31,12 @@ struct ValidationBudget {
 ValidationBudget budget(Quality quality);
 MeshBudget mesh_budget(Quality quality);
 
+/// What the response of points is measured with (study/response.h).
+struct ResponseBudget {
+  uint64_t walks = 1'000'000;  // of an exit's tally
+  int resolution = 128;        // pixels of the maps
+};
+
 /// One flat scene with everything measured on it.
 struct SceneResult {
   PlanarScene scene;
@@ -67,6 +73,7 @@ struct ValidationOptions {
   std::filesystem::path cache;  // of converged references; empty: the user's
   uint64_t seed = 1;
   std::optional<MeshBudget> mesh_budget;  // instead of the quality's
+  std::optional<ResponseBudget> response_budget;
 };
 
 struct ValidationResult {
