@@ -8,7 +8,6 @@
 #include "core/parallel.h"
 #include "integrators/planar_volume.h"
 #include "integrators/render.h"
-#include "study/image_errors.h"
 
 namespace alabaster {
 
@@ -89,7 +88,7 @@ TimedImage render_planar_reference(const PlanarScene& scene, double noise, doubl
   PlanarVolume volume(scene, options);
   run_to_noise(volume, noise, max_paths);
   Image image = volume.develop();
-  while (known > 0 && image_errors(image, image).kept < known && volume.paths() < max_paths &&
+  while (known > 0 && compare_images(image, image).kept < known && volume.paths() < max_paths &&
          !cancellation_requested()) {
     volume.run(std::min(volume.paths() / 2, max_paths - volume.paths()));
     image = volume.develop();

@@ -242,6 +242,18 @@ class ValidationRun {
       result_.footprint_options.push_back(plan);
       result_.footprints.push_back(measure_footprints(plan));
     }
+    measure_speed_and_energy();
+  }
+
+  void measure_speed_and_energy() {
+    if (cancellation_requested()) return;
+    const PlanarScene& first = scenes_.front();
+    result_.speed = measure_planar_speed(first, profile_for(first), options_.seed);
+    for (const PlanarScene& scene : scenes_)
+      for (const char* model : {"composite", "composite:order1"})
+        result_.excess.emplace_back(
+            scene.name + ", " + model,
+            energy_excess(PlanarModel(scene, model, profile_for(scene)), profile_for(scene), options_.seed));
   }
 
   double fraction_done() const {

@@ -8,6 +8,7 @@
 
 #include "study/footprint.h"
 #include "study/mesh_validation.h"
+#include "study/planar_figures.h"
 #include "study/planar_method.h"
 
 namespace alabaster {
@@ -81,7 +82,9 @@ struct ValidationResult {
   std::vector<MeshSceneResult> meshes;
   std::vector<KernelMap> maps;
   std::vector<FootprintOptions> footprint_options;
-  std::vector<std::vector<Footprint>> footprints;  // one set per options
+  std::vector<std::vector<Footprint>> footprints;            // one set per options
+  std::optional<PlanarSpeed> speed;                          // on the first flat scene
+  std::vector<std::pair<std::string, EnergyExcess>> excess;  // of the composite model, by flat scene
   double seconds = 0, cpu_seconds = 0;
   bool cancelled = false;
 };

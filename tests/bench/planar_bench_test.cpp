@@ -8,32 +8,13 @@
 
 #include "core/parallel.h"
 #include "integrators/planar_volume.h"
-#include "study/planar_method.h"
+#include "study/planar_figures.h"
 #include "study/planar_scene_file.h"
 #include "study/planar_to_noise.h"
 
 using namespace alabaster;
 
 namespace {
-
-/// Evaluations of S_V per CPU second, entry point's albedo lookup included, over pairs as an image has them.
-double evaluations_per_second(const PlanarModel& model) {
-  Rng rng(1);
-  std::vector<std::pair<BssrdfPoint, Vec2>> pairs;
-  for (int i = 0; i < 4096; ++i) {
-    const Vec2 exit(10 * rng.uniform() - 5, 10 * rng.uniform() - 5);
-    pairs.emplace_back(model.point(exit), model.scene().light.sample({rng.uniform(), rng.uniform()}));
-  }
-  double sum = 0;
-  int rounds = 0;
-  const double start = cpu_seconds();
-  while (cpu_seconds() - start < 0.2 || rounds < 4) {
-    for (const auto& [exit, entry] : pairs) sum += model.bssrdf().evaluate(model.point(entry), exit).r;
-    ++rounds;
-  }
-  REQUIRE(sum > 0);
-  return 4096.0 * rounds / (cpu_seconds() - start);
-}
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
