@@ -2,9 +2,8 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "core/cancellation.h"
+#include "cli/study_options.h"
 #include "core/parallel.h"
-#include "core/progress.h"
 #include "study/speed_accuracy.h"
 
 namespace alabaster {
@@ -13,21 +12,21 @@ namespace {
 
 struct ChartSettings {
   ChartOptions options;
-  std::string what = "speed", budgets = "quick", output, cache;
-  int threads = 0;
+  StudyOptions study;
+  std::string what = "speed", budgets = "quick";
 };
 
 void run(ChartSettings& settings) {
-  set_thread_count(settings.threads);
-  settings.options.quality = quality_from_name(settings.budgets);
-  settings.options.output = settings.output;
-  settings.options.cache = settings.cache;
-  const ChartResult result = chart_speed_and_accuracy(settings.options);
-  if (result.cancelled) {
-    say("stopped; what was finished is written");
-    set_exit_code(interrupted_exit_code);
-  }
-  say(settings.output + "/chart.html written after " + format_duration(result.seconds));
+  set_thread_count(settings.study.threads);
+  ChartOptions& options = settings.options;
+  options.quality = quality_from_name(settings.budgets);
+  options.output = settings.study.output;
+  options.cache = settings.study.cache;
+  options.seed = settings.study.seed;
+  options.budget = chart_budget(options.quality);
+  options.budget->mesh = settings.study.applied_to(options.budget->mesh);
+  const ChartResult result = chart_speed_and_accuracy(options);
+  finish_study(settings.study.output + "/chart.html", result.seconds);
 }
 
 }  // namespace
@@ -40,10 +39,9 @@ void add_chart_command(CLI::App& app) {
       ->check(CLI::IsMember({"speed"}))
       ->capture_default_str();
   command
-      ->add_option(
-          "--scenes", settings->options.scenes,
-          "Scenes or sets, separated by commas: planar, mesh, stripes1, blob, MODEL.glb, SCENE.json ... "
-          "(stripes1,floral,sphere_3,sphere_10,torus,blob,fold,slab_2)")
+      ->add_option("--scenes", settings->options.scenes,
+                   "Scenes or sets, separated by commas: planar, mesh, stripes1, blob, MODEL.glb, SCENE.json "
+                   "... (stripes1,floral,sphere_3,sphere_10,torus,blob,fold,slab_2)")
       ->delimiter(',');
   command
       ->add_option("--methods", settings->options.methods,
@@ -51,11 +49,7 @@ void add_chart_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--budgets", settings->budgets, "quick (20 minutes) or full (hours)")
       ->capture_default_str();
-  command->add_option("-o,--output", settings->output, "Folder for charts and chart.json")->required();
-  command->add_option("--cache", settings->cache, "Folder of converged references (the user's cache)");
-  command->add_option("--seed", settings->options.seed, "Seed of all random numbers")->capture_default_str();
-  command->add_option("--threads", settings->threads, "Number of threads; 0: all cores")
-      ->capture_default_str();
+  add_study_options(*command, settings->study);
   command->callback([settings] { run(*settings); });
 }
 

@@ -2,9 +2,8 @@
 #include <memory>
 
 #include "cli/commands.h"
-#include "core/cancellation.h"
+#include "cli/study_options.h"
 #include "core/parallel.h"
-#include "core/progress.h"
 #include "study/response.h"
 #include "study/validation.h"
 
@@ -14,33 +13,34 @@ namespace {
 
 struct ValidateSettings {
   ValidationOptions options;
+  StudyOptions study;
   std::vector<std::string> scenes;  // empty: the default of what is measured
-  std::string what = "images", quality = "quick", output, cache;
-  int threads = 0;
+  std::string what = "images", quality = "quick";
 };
 
 void measure_images(ValidateSettings& settings) {
-  if (!settings.scenes.empty()) settings.options.scenes = settings.scenes;
-  const ValidationResult result = validate(settings.options);
-  say(settings.output + "/report.html written after " + format_duration(result.seconds));
+  ValidationOptions& options = settings.options;
+  if (!settings.scenes.empty()) options.scenes = settings.scenes;
+  options.mesh_budget = settings.study.applied_to(mesh_budget(options.quality));
+  const ValidationResult result = validate(options);
+  finish_study(settings.study.output + "/report.html", result.seconds);
 }
 
 void measure_response(ValidateSettings& settings) {
-  settings.options.scenes = settings.scenes.empty() ? response_scenes() : settings.scenes;
-  validate_response(settings.options);
-  say(settings.output + "/response.html written");
+  ValidationOptions& options = settings.options;
+  options.scenes = settings.scenes.empty() ? response_scenes() : settings.scenes;
+  const double start = wall_seconds();
+  validate_response(options);
+  finish_study(settings.study.output + "/response.html", wall_seconds() - start);
 }
 
 void run(ValidateSettings& settings) {
-  set_thread_count(settings.threads);
+  set_thread_count(settings.study.threads);
   settings.options.quality = quality_from_name(settings.quality);
-  settings.options.output = settings.output;
-  settings.options.cache = settings.cache;
+  settings.options.output = settings.study.output;
+  settings.options.cache = settings.study.cache;
+  settings.options.seed = settings.study.seed;
   (settings.what == "response" ? measure_response : measure_images)(settings);
-  if (cancellation_requested()) {
-    say("stopped; what was finished is written");
-    set_exit_code(interrupted_exit_code);
-  }
 }
 
 }  // namespace
@@ -50,10 +50,9 @@ void add_validate_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "validate", "Measure every model against the volumetric reference and write a report");
   command
-      ->add_option(
-          "--what", settings->what,
-          "images: errors of whole images; response: S_V around chosen points of meshes against walks "
-          "from there")
+      ->add_option("--what", settings->what,
+                   "images: errors of whole images; response: S_V around chosen points of meshes against "
+                   "walks from there")
       ->check(CLI::IsMember({"images", "response"}))
       ->capture_default_str();
   command
@@ -68,11 +67,7 @@ void add_validate_command(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--quality", settings->quality, "quick (minutes) or full (an hour)")
       ->capture_default_str();
-  command->add_option("-o,--output", settings->output, "Folder for the report")->required();
-  command->add_option("--cache", settings->cache, "Folder of converged references (the user's cache)");
-  command->add_option("--seed", settings->options.seed, "Seed of all random numbers")->capture_default_str();
-  command->add_option("--threads", settings->threads, "Number of threads; 0: all cores")
-      ->capture_default_str();
+  add_study_options(*command, settings->study);
   command->callback([settings] { run(*settings); });
 }
 

@@ -47,13 +47,20 @@ MeshMethod bssrdf_method(const std::string& model, const std::string& basis, con
 }  // namespace
 
 const std::vector<std::string>& mesh_bases() {
-  static const std::vector<std::string> names{"half-space"};
+  static const std::vector<std::string> names{"half-space", "shape"};
   return names;
+}
+
+Basis MeshMethod::basis_value() const {
+  return basis == "shape" ? Basis::shape : Basis::half_space;
 }
 
 SurfaceOptions MeshMethod::apply(SurfaceOptions options) const {
   options.transport = transport;
-  if (transport == Transport::bssrdf) options.model = model;
+  if (transport == Transport::bssrdf) {
+    options.model = model;
+    options.basis = basis_value();
+  }
   return options;
 }
 

@@ -17,6 +17,7 @@ struct MeshMethod {
   std::string model;  // of Transport::bssrdf, for make_bssrdf()
   std::string basis;
 
+  Basis basis_value() const;
   SurfaceOptions apply(SurfaceOptions options) const;
 };
 

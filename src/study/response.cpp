@@ -234,7 +234,7 @@ ResponseSums integrate_response(const Scene& scene, const ExitPoint& exit, const
                                 uint64_t seed) {
   const SceneObject& object = scene.objects[exit.object];
   const BssrdfTransport transport(scene, exit.object, medium_of(scene, exit), boundary_of(scene, exit),
-                                  method.model);
+                                  method.model, method.basis_value());
   const Bssrdf& model = transport.model();
   const BssrdfPoint at_exit = model.medium().point(exit.surface);
   const Binning binning(scene, exit);
