@@ -15,15 +15,11 @@ Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium
   assert(medium.profile != nullptr && medium.albedo != nullptr && medium.sigma_t.min() > 0);
 }
 
-PointShape BssrdfMedium::shape_at(const SurfacePoint& surface) const {
-  return PointShape(shape->surface->at(surface.triangle, surface.barycentric), thickest_body / sigma_t.min());
-}
-
-PairShape Bssrdf::pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  if (medium_.shape != nullptr)
-    return pair_shape(entry.surface.position, entry.shape, exit.surface.position, exit.shape);
+PairShape Bssrdf::pair(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
+                       const PointShape& at_exit) const {
+  if (medium_.shape != nullptr) return pair_shape(entry, at_entry, exit, at_exit);
   PairShape flat;
-  flat.distance = glm::distance(entry.surface.position, exit.surface.position);
+  flat.distance = glm::distance(entry, exit);
   return flat;
 }
 

@@ -35,11 +35,13 @@ struct BssrdfMedium {
   const ShapeBasis* shape = nullptr;
 
   BssrdfPoint point(const SurfacePoint& surface) const {
-    return {surface, albedo->at(surface), shape != nullptr ? shape_at(surface) : PointShape{}};
+    return {surface, albedo->at(surface), shape_at(surface.triangle, surface.barycentric)};
   }
-
- private:
-  PointShape shape_at(const SurfacePoint& surface) const;
+  /// Nothing without the shape basis.
+  PointShape shape_at(uint32_t triangle, Vec2 barycentric) const {
+    if (shape == nullptr) return {};
+    return PointShape(shape->surface->at(triangle, barycentric), thickest_body / sigma_t.min());
+  }
 };
 
 /// A spatially varying BSSRDF S_V(x_i, x_e). Exactly: evaluate, sample a distance, pdf of a distance.
@@ -61,15 +63,20 @@ class Bssrdf {
   /// Density of sample_distance per metre; positive for every distance > 0.
   double pdf_distance(const BssrdfPoint& exit, int channel, double distance) const;
 
+  /// Distance and shape of a pair, for the basis.
+  PairShape pair(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
+                 const PointShape& at_exit) const;
+  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
+  /// the shape.
+  Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const;
+
   const BssrdfMedium& medium() const { return medium_; }
   const DistanceTable& distances() const { return distances_; }
 
  protected:
-  /// Distance and shape of a pair, for the basis.
-  PairShape pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const;
-  /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
-  /// the shape.
-  Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const;
+  PairShape pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+    return pair(entry.surface.position, entry.shape, exit.surface.position, exit.shape);
+  }
 
   BssrdfMedium medium_;
 

@@ -27,11 +27,6 @@ double edge(int bin) {
   return std::bit_cast<double>(static_cast<uint64_t>(first_code + bin - 1) << mantissa_shift);
 }
 
-double albedo_of(int level) {
-  const double s = static_cast<double>(level) / (DistanceTable::level_count - 1);
-  return 1 - s * s * s * s;
-}
-
 std::vector<double> bin_masses(const ProfileTable& profile, double albedo) {
   std::vector<double> mass(bin_count + 1);  // the last is the tail
   double total = 0;
@@ -58,7 +53,7 @@ DistanceTable::DistanceTable(const ProfileTable& profile) {
   density_.reserve(level_count * (bin_count + 1));
   cumulative_.reserve(level_count * (bin_count + 1));
   for (int level = 0; level < level_count; ++level) {
-    const std::vector<double> mass = bin_masses(profile, std::max(albedo_of(level), 1e-6));
+    const std::vector<double> mass = bin_masses(profile, std::max(albedo(level), 1e-6));
     double sum = 0;
     for (int bin = 0; bin <= bin_count; ++bin) {
       const double m = mass[static_cast<std::size_t>(bin)];
@@ -68,6 +63,11 @@ DistanceTable::DistanceTable(const ProfileTable& profile) {
       sum += m;
     }
   }
+}
+
+double DistanceTable::albedo(int level) {
+  const double s = static_cast<double>(level) / (level_count - 1);
+  return 1 - s * s * s * s;
 }
 
 int DistanceTable::level(double albedo) {

@@ -18,6 +18,7 @@ class DistanceTable {
 
   /// Levels are spaced in (1 - albedo)^(1/4); the one chosen is the nearest that is not darker.
   static int level(double albedo);
+  static double albedo(int level);
   static constexpr int level_count = 49;
 
   /// u in [0, 1); increasing in u.

@@ -5,6 +5,15 @@
 
 namespace alabaster {
 
+namespace {
+
+double smooth_step(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+}  // namespace
+
 PointShape::PointShape(const LocalShape& local, double thickest)
     : normal(local.normal),
       curvature_min(local.curvature_min),
@@ -22,16 +31,27 @@ PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& 
   PairShape pair;
   pair.distance = glm::distance(entry, exit);
   pair.inverse_thickness = 0.5 * (at_entry.inverse_thickness + at_exit.inverse_thickness);
-  pair.sphericity = 0.5 * (at_entry.sphericity + at_exit.sphericity);
+  // What is a ball but for 2 % is one.
+  pair.sphericity = std::min(0.51 * (at_entry.sphericity + at_exit.sphericity), 1.0);
   const double curvature = glm::dot(at_entry.normal - at_exit.normal, chord) / square;
   // Short chords magnify errors of the normals; on opposite sides of a body 2 / thickness is right.
-  const double low = std::min(at_entry.curvature_min, at_exit.curvature_min);
+  const double low = std::min({at_entry.curvature_min, at_exit.curvature_min, 0.0});
   const double high = std::max(at_entry.curvature_max, at_exit.curvature_max) + 2 * pair.inverse_thickness;
-  pair.curvature = std::clamp(curvature, std::min(low, high), high);
-  const double turned = std::clamp(0.5 * (1 - glm::dot(at_entry.normal, at_exit.normal)), 0.0, 1.0);
-  pair.far = turned * turned;
-  const double across = 0.5 * pair.curvature * pair.distance;
-  pair.lateral = pair.distance * std::sqrt(std::max(0.0, 1 - across * across));
+  pair.curvature = std::clamp(curvature, low, std::max(low, high));
+  // On a saddle, a pair along the convex direction sends less than on a ball or a cylinder.
+  const double hollow = -0.5 * std::min(at_entry.curvature_min + at_exit.curvature_min, 0.0);
+  if (pair.curvature > 0) pair.curvature *= 1 - 0.5 * hollow / (pair.curvature + hollow);
+  const double turned = 0.5 * (1 - glm::dot(at_entry.normal, at_exit.normal));
+  // Two surfaces that face each other more than those of a cavity of their own curvature would: a gap.
+  pair.reach = 1 - smooth_step(5 * (low - curvature) * pair.distance) * smooth_step((turned - 0.6) / 0.3);
+  // Of the other side nothing is asked where the normals agree but for some 30 degrees.
+  pair.far = std::clamp((turned * turned - 0.005) / 0.99, 0.0, 1.0);
+  if (pair.far > 0 && pair.inverse_thickness > 0) {
+    const double thickness = 1 / pair.inverse_thickness, across = 0.5 * curvature * square;
+    pair.far *= smooth_step(2 * across / thickness);
+    pair.separation = std::clamp(across, 0.5 * thickness, 2 * thickness);
+    pair.lateral = std::sqrt(std::max(square - pair.separation * pair.separation, 1e-6 * square));
+  }
   return pair;
 }
 

@@ -26,6 +26,12 @@ constexpr double area_share = 0.005;
 /// Of the radii, this part follows the brightest albedo anywhere instead of the typical one around the exit.
 constexpr double brightest_share = 0.05;
 
+/// With the shape basis: width of the disk for light that crosses the body, in thicknesses; how far through
+/// the body probes always look; and the most of the radii that follow it.
+constexpr double body_width = 0.5;
+constexpr double body_reach = 1.3;
+constexpr double most_body_light = 0.85;
+
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
   if (u < probability) {
@@ -64,7 +70,8 @@ struct ProbeSampler::Candidate {
   uint32_t triangle;
   Vec2 barycentric;
   double density;
-  double importance;  // about S_V / density
+  PointShape shape;
+  double importance = 1;  // about S_V / density
 };
 
 ProbeSampler::ProbeSampler(const Bssrdf& model, ProbeTarget target)
@@ -75,6 +82,8 @@ ProbeSampler::ProbeSampler(const Bssrdf& model, ProbeTarget target)
   for (const Vec3& p : target_.mesh->positions) radius_ = std::max(radius_, glm::distance(p, centre_));
   radius_ *= 1.0001;
   facing_ = smoothed_normals(*target_.mesh, facing_scale / model.medium().sigma_t.min());
+  if (model.medium().shape != nullptr)
+    body_light_.emplace(*model.medium().profile, *model.medium().shape->families);
   const Rgb brightest = model.medium().albedo->max();
   for (int c = 0; c < 3; ++c)
     brightest_level_[static_cast<std::size_t>(c)] = DistanceTable::level(brightest[c]);
@@ -90,25 +99,31 @@ bool ProbeSampler::in_medium(uint32_t triangle) const {
 std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
   const Rgb typical = model_.typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
-  const DistanceTable& table = model_.distances();
 
   Exit exit;
   exit.point = point;
   const Vec3 to_centre = centre_ - point.surface.position;
-  const std::array<Vec3, 3> directions = tilted_axes(glm::normalize(Vec3(facing_[point.surface.triangle])));
+  exit.typical = typical;
+  const double body_share = add_components(exit, typical);
+  // Light that crosses a body comes from straight behind, whatever the surroundings face.
+  Vec3 facing = glm::normalize(Vec3(facing_[point.surface.triangle]));
+  if (body_share > 0) {
+    const double own = std::min(1.0, 4 * body_share);
+    facing = glm::normalize((1 - own) * facing + (own + 1e-9) * point.shape.normal);
+  }
+  const std::array<Vec3, 3> directions = tilted_axes(facing);
   for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis_towards(directions[a], to_centre);
-  add_components(exit, typical);
   for (int k = 0; k < exit.component_count; ++k) {
     Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
     for (std::size_t a = 0; a < 3; ++a) {
-      c.reach[a] = table.cdf(c.level, c.sigma_t * (exit.axes[a].centre + radius_));
+      c.reach[a] = component_cdf(c, exit.axes[a].centre + radius_);
       c.density_scale[a] = c.probability * c.sigma_t / c.reach[a];
     }
   }
   return exit;
 }
 
-void ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
+double ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
   const Rgb& sigma_t = model_.medium().sigma_t;
   const auto add = [&](int level, double sigma, double share) {
     for (int k = 0; k < exit.component_count; ++k) {
@@ -129,10 +144,51 @@ void ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
     add(std::min(level, brightest_level_[static_cast<std::size_t>(c)]), sigma_t[c], brightest_share * share);
     exit.near_limit = std::max(exit.near_limit, near_distance_[static_cast<std::size_t>(level)] / sigma_t[c]);
   };
-  if (typical.is_grey() && sigma_t.is_grey()) return add_channel(0, 1);
-  const double sum = typical.r + typical.g + typical.b;
-  for (int c = 0; c < 3; ++c)
-    if (typical[c] > 0) add_channel(c, typical[c] / sum);
+  // Light that crosses the body, if it is thin enough; one disk serves all channels.
+  const PointShape& shape = exit.point.shape;
+  double body_share = 0;
+  const auto add_both = [&](int c, double share) {
+    double body = 0;
+    if (body_light_ && shape.inverse_thickness > 0)
+      body = std::min(most_body_light,
+                      body_light_->share(DistanceTable::level(typical[c]),
+                                         sigma_t[c] / shape.inverse_thickness, shape.sphericity));
+    add_channel(c, share * (1 - body));
+    body_share += share * body;
+  };
+  if (typical.is_grey() && sigma_t.is_grey()) {
+    add_both(0, 1);
+  } else {
+    const double sum = typical.r + typical.g + typical.b;
+    for (int c = 0; c < 3; ++c)
+      if (typical[c] > 0) add_both(c, typical[c] / sum);
+  }
+  if (body_share > 0) add_body_light(exit, body_share);
+  return body_share;
+}
+
+void ProbeSampler::add_body_light(Exit& exit, double share) const {
+  const double thickness = 1 / exit.point.shape.inverse_thickness;
+  Exit::Component& disk = exit.components[static_cast<std::size_t>(exit.component_count++)];
+  disk.level = -1;
+  disk.sigma_t = 1 / (body_width * thickness);
+  disk.probability = share;
+  exit.near_limit = std::max(exit.near_limit, body_reach * thickness);
+}
+
+// The next three in units of 1 / sigma_t.
+double ProbeSampler::component_pdf(const Exit::Component& c, double radius) const {
+  const double rho = c.sigma_t * radius;
+  return c.level < 0 ? 2 * rho / ((1 + rho * rho) * (1 + rho * rho)) : model_.distances().pdf(c.level, rho);
+}
+
+double ProbeSampler::component_cdf(const Exit::Component& c, double radius) const {
+  const double rho = c.sigma_t * radius;
+  return c.level < 0 ? rho * rho / (1 + rho * rho) : model_.distances().cdf(c.level, rho);
+}
+
+double ProbeSampler::component_radius(const Exit::Component& c, double u) const {
+  return c.level < 0 ? std::sqrt(u / (1 - u)) : model_.distances().sample(c.level, u);
 }
 
 /// Density per metre of the radius around an axis.
@@ -140,7 +196,7 @@ double ProbeSampler::radius_density(const Exit& exit, std::size_t axis, double r
   double sum = 0;
   for (int k = 0; k < exit.component_count; ++k) {
     const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    sum += c.density_scale[axis] * model_.distances().pdf(c.level, c.sigma_t * radius);
+    sum += c.density_scale[axis] * component_pdf(c, radius);
   }
   return sum;
 }
@@ -161,7 +217,7 @@ std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 di
   while (k + 1 < static_cast<std::size_t>(exit.component_count) && u >= exit.components[k].probability)
     u -= exit.components[k++].probability;
   const Exit::Component& c = exit.components[k];
-  const double radius = model_.distances().sample(c.level, disk.x * c.reach[a]) / c.sigma_t;
+  const double radius = component_radius(c, disk.x * c.reach[a]) / c.sigma_t;
   const double angle = half_angle(axis, radius) * (2 * disk.y - 1);
   const Vec3 centre =
       exit.point.surface.position + radius * (std::cos(angle) * axis.across + std::sin(angle) * axis.aside);
@@ -214,8 +270,8 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
     const double distance = glm::distance(position, exit.point.surface.position);
     if (!(distance > 0)) return;
     const double expected = density(exit, position, mesh.geometric_normal(triangle));
-    candidates.push_back(
-        {triangle, barycentric, expected, radius_density(exit, 0, distance) / (distance * expected)});
+    candidates.push_back({triangle, barycentric, expected, model_.medium().shape_at(triangle, barycentric)});
+    candidates.back().importance = importance(exit, candidates.back(), position);
   };
   Vec2 choice = u.choice;
   if (decide(choice.x, area_share)) {
@@ -228,11 +284,23 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
   return candidates;
 }
 
+/// About S_V / density: without the shape basis by the density of the radii, which costs a table lookup; with
+/// it by the basis itself, since the far side of a body may send more light than the near side.
+double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, const Vec3& position) const {
+  const SurfacePoint& surface = exit.point.surface;
+  if (!body_light_) {
+    const double distance = glm::distance(position, surface.position);
+    return radius_density(exit, 0, distance) / (distance * candidate.density);
+  }
+  const PairShape pair = model_.pair(position, candidate.shape, surface.position, exit.point.shape);
+  return model_.basis_over_albedo(exit.typical, pair).mean() / candidate.density;
+}
+
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {
   SurfacePoint surface = target_.mesh->surface_point(candidate.triangle, candidate.barycentric);
   surface.object = target_.object;
   EntrySample entry;
-  entry.point = model_.medium().point(surface);
+  entry.point = {surface, model_.medium().albedo->at(surface), candidate.shape};
   entry.density = candidate.density;
   entry.weight = model_.evaluate(entry.point, exit.point) * (factor / candidate.density);
   return entry;

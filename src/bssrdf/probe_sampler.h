@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bssrdf/area_sampler.h"
+#include "bssrdf/body_light.h"
 #include "bssrdf/bssrdf.h"
 #include "core/sampler.h"
 #include "geometry/mesh.h"
@@ -56,8 +57,8 @@ class ProbeSampler {
   struct Exit {
     /// Radii for one channel at one albedo.
     struct Component {
-      int level = 0;       // of the distance table
-      double sigma_t = 0;  // 1/m
+      int level = 0;       // of the distance table; -1: a disk for light that crosses the body
+      double sigma_t = 0;  // 1/m; of the disk the inverse of its radius
       double probability = 0;
       // Per axis: the share of the distribution within the axis's limit, and what its density is multiplied
       // by.
@@ -70,9 +71,10 @@ class ProbeSampler {
     };
     BssrdfPoint point;
     std::array<Axis, 3> axes;
-    std::array<Component, 6> components;
+    std::array<Component, 7> components;
     int component_count = 0;
     double near_limit = 0;  // m: beyond it along the chord, only some probes look
+    Rgb typical;            // the albedo that draws are aimed at
   };
   /// Nothing where no light can leave, because the albedo is 0.
   std::optional<Exit> prepare(const BssrdfPoint& exit) const;
@@ -100,7 +102,13 @@ class ProbeSampler {
   struct Candidate;
   std::span<Candidate> draw(const Exit& exit, const EntryRandom& u) const;
   EntrySample finish(const Exit& exit, const Candidate& candidate, double factor) const;
-  void add_components(Exit& exit, const Rgb& typical) const;
+  /// Returns the share of light that crosses the body.
+  double add_components(Exit& exit, const Rgb& typical) const;
+  void add_body_light(Exit& exit, double share) const;
+  double importance(const Exit& exit, const Candidate& candidate, const Vec3& position) const;
+  double component_pdf(const Exit::Component& component, double radius) const;
+  double component_cdf(const Exit::Component& component, double radius) const;
+  double component_radius(const Exit::Component& component, double u) const;
   double radius_density(const Exit& exit, std::size_t axis, double radius) const;
   double half_angle(const Exit::Axis& axis, double radius) const;
   double density(const Exit& exit, const Vec3& position, const Vec3& normal) const;
@@ -109,8 +117,9 @@ class ProbeSampler {
   const Bssrdf& model_;
   ProbeTarget target_;
   AreaSampler area_;
-  std::vector<Vec3f> facing_;  // per triangle: what the axes are tilted against
-  Vec3 centre_{0};             // of a sphere around the object
+  std::vector<Vec3f> facing_;            // per triangle: what the axes are tilted against
+  std::optional<BodyLight> body_light_;  // for the shape basis
+  Vec3 centre_{0};                       // of a sphere around the object
   double radius_ = 0;
   std::array<int, 3> brightest_level_{};                            // per channel
   std::array<double, DistanceTable::level_count> near_distance_{};  // optical

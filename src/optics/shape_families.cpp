@@ -13,35 +13,42 @@ namespace {
 constexpr int fine_sizes = 2 * (ShapeGrid::sizes - 1) + 2;
 constexpr float sizes_per_octave = 4;
 constexpr double largest_log2 = ShapeGrid::first_size_octave + 0.5 * (ShapeGrid::sizes - 1);
-const double smallest_inverse = std::exp2(-largest_log2);
+constexpr double smallest_inverse = 1.0 / (1 << static_cast<int>(largest_log2));
 constexpr int rows = ShapeGrid::rows;
 
-// Position among the sizes of an inverse size per mean free path.
-double size_position(double inverse) {
-  if (inverse <= ShapeFamilies::flat) return 0;
-  if (inverse < smallest_inverse)
-    return (inverse - ShapeFamilies::flat) / (smallest_inverse - ShapeFamilies::flat);
-  const double position = 1 + sizes_per_octave * (std::log2(inverse) + largest_log2);
-  return std::min(position, fine_sizes - 1.0);
+// Positions among the sizes of inverse sizes per mean free path, given their logarithms too.
+Float4 size_position(Float4 inverse, Float4 log2_inverse) {
+  constexpr auto flat = static_cast<float>(ShapeFamilies::flat);
+  const Float4 zero = inverse - inverse;
+  const Float4 nearly_flat = (inverse - flat) * static_cast<float>(1 / (smallest_inverse - flat));
+  const Float4 curved = 1.f + sizes_per_octave * (log2_inverse + static_cast<float>(largest_log2));
+  const Float4 last = zero + static_cast<float>(fine_sizes - 1);
+  const Float4 position = inverse < static_cast<float>(smallest_inverse) + zero ? nearly_flat : curved;
+  const Float4 bounded = position < last ? position : last;
+  return inverse <= flat + zero ? zero : bounded;
 }
 
-double node_position(ShapeFamily family, double ratio) {
-  const double position =
-      (std::log2(std::max(ratio, 1e-30)) - ShapeGrid::first_octave(family)) * ShapeGrid::nodes_per_octave;
-  return std::clamp(position, 0.0, ShapeGrid::nodes(family) - 1.0);
+float node_position(ShapeFamily family, float log2_ratio) {
+  const float position =
+      (log2_ratio - static_cast<float>(ShapeGrid::first_octave(family))) * ShapeGrid::nodes_per_octave;
+  return std::clamp(position, 0.f, static_cast<float>(ShapeGrid::nodes(family) - 1));
 }
 
-// 1 on slabs thinner than eight diffusion lengths, 0 beyond ten; per channel, inverse thickness in optical
-// units.
-Float4 thickness_fade(const Rgb& albedo, const Rgb& inverse, double g) {
-  Float4 fade{};
-  for (int c = 0; c < 3; ++c) {
-    // (thickness / diffusion length)^2 against 64 and 100.
-    const double inverse_square = 3 * (1 - albedo[c]) * (1 - g * albedo[c]), square = inverse[c] * inverse[c];
-    const double x = std::clamp((100 * square - inverse_square) / (36 * square), 0.0, 1.0);
-    fade[c] = static_cast<float>(x * x * (3 - 2 * x));
-  }
-  return fade;
+// 1 on slabs thinner than eight diffusion lengths, 0 beyond ten; `remainder` is 1 - albedo, `inverse` that of
+// the optical thickness.
+Float4 thickness_fade(Float4 remainder, Float4 inverse, float g) {
+  // The squares of thickness / diffusion length against 64 and 100.
+  const Float4 square = inverse * inverse, zero = square - square, one = zero + 1.f;
+  const Float4 absorption = 3.f * remainder * ((1.f - g) + g * remainder);
+  Float4 x = (100.f * square - absorption) / (36.f * square + 1e-30f);
+  x = x < zero ? zero : x;
+  x = x < one ? x : one;
+  return x * x * (3.f - 2.f * x);
+}
+
+Float4 four(const Rgb& v, double last) {
+  return Float4{static_cast<float>(v.r), static_cast<float>(v.g), static_cast<float>(v.b),
+                static_cast<float>(last)};
 }
 
 }  // namespace
@@ -72,85 +79,98 @@ ShapeFamilies::ShapeFamilies(const ShapeTable& table) : g_(table.g), eta_(table.
   }
 }
 
-// One family's log2 factors in three channels.
-struct ShapeFamilies::Lookup {
+// Three albedos among the rows.
+struct ShapeFamilies::Rows {
+  Float4 remainder, fraction;
   Int4 row;
-  Float4 row_fraction;
 
-  explicit Lookup(const Rgb& albedo) {
-    const auto remainder = [](double a) { return static_cast<float>(std::min(std::max(1 - a, 0.0), 1.0)); };
-    const Float4 remainders{remainder(albedo.r), remainder(albedo.g), remainder(albedo.b), 0};
-    const Float4 position = fast_row_position(remainders) * (1.f / ShapeGrid::row_stride);
+  explicit Rows(const Rgb& albedo) {
+    remainder = four(Rgb(1) - albedo, 0);
+    const Float4 zero = remainder - remainder, one = zero + 1.f;
+    remainder = remainder < zero ? zero : remainder;
+    remainder = remainder < one ? remainder : one;
+    const Float4 position = fast_row_position(remainder) * (1.f / ShapeGrid::row_stride);
     row = to_integer(position);
     const Int4 last = row - row + (rows - 2);
     row = row < last ? row : last;
-    row_fraction = position - to_float(row);
-  }
-
-  Float4 operator()(const std::vector<float>& table, ShapeFamily family, const double size[3],
-                    double node) const {
-    const int nodes = ShapeGrid::nodes(family);
-    const int n = std::min(static_cast<int>(node), nodes - 2);
-    const auto along = static_cast<float>(node - n);
-    Float4 result{};
-    for (int c = 0; c < 3; ++c) {
-      const int s = std::min(static_cast<int>(size[c]), fine_sizes - 2);
-      const auto across = static_cast<float>(size[c] - s);
-      const float t = row_fraction[c];
-      const float* corner = &table[static_cast<std::size_t>((s * nodes + n) * rows + row[c])];
-      const auto at = [&](const float* p) { return p[0] + t * (p[1] - p[0]); };
-      const float* next = corner + nodes * rows;
-      const float a = at(corner), b = at(corner + rows), d = at(next), e = at(next + rows);
-      const float low = a + along * (b - a), high = d + along * (e - d);
-      result[c] = low + across * (high - low);
-    }
-    return result;
+    fraction = position - to_float(row);
   }
 };
 
+// log2 factors of one family in the first channels, each at its own size and albedo.
+Float4 ShapeFamilies::log2_factor(ShapeFamily family, const Rows& rows_of, Float4 size, float node,
+                                  int channels) const {
+  const int nodes = ShapeGrid::nodes(family);
+  const int lower = std::min(static_cast<int>(node), nodes - 2);
+  const float along = node - static_cast<float>(lower);
+  Float4 result{};
+  for (int c = 0; c < channels; ++c) {
+    const int level = std::min(static_cast<int>(size[c]), fine_sizes - 2);
+    const float across = size[c] - static_cast<float>(level), t = rows_of.fraction[c];
+    const float* at = table(family).data() + (level * nodes + lower) * rows + rows_of.row[c];
+    const auto edge = [t](const float* p) { return p[0] + t * (p[1] - p[0]); };
+    const float* next = at + nodes * rows;
+    const float low = edge(at) + along * (edge(at + rows) - edge(at));
+    const float high = edge(next) + along * (edge(next + rows) - edge(next));
+    result[c] = low + across * (high - low);
+  }
+  return result;
+}
+
 Rgb ShapeFamilies::factor(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const {
-  const Lookup look_up(albedo);
-  const auto positions = [&](double inverse, double(&position)[3]) {
-    position[0] = size_position(inverse / sigma_t.r);
-    const bool grey = sigma_t.is_grey();
-    position[1] = grey ? position[0] : size_position(inverse / sigma_t.g);
-    position[2] = grey ? position[0] : size_position(inverse / sigma_t.b);
-    return position[0] > 0 || position[1] > 0 || position[2] > 0;
-  };
   // log C = (1 - far) (log ball + (1 - s) log near) + far (s log ball + (1 - s) log far)
-  const double slab = 1 - pair.sphericity, ball = 1 - pair.far * slab;
-  Float4 log2_factor{};
-  double size[3];
+  const auto slab = static_cast<float>(1 - pair.sphericity), far = static_cast<float>(pair.far);
+  const float ball = 1 - far * slab;
   const double curvature = std::abs(pair.curvature);
-  if (ball > 0 && positions(curvature, size)) {
+  const Float4 path = four(Rgb(1) / sigma_t, 1);
+  const Float4 curved = static_cast<float>(curvature) * path;
+  const Float4 thin = static_cast<float>(pair.inverse_thickness) * path;
+  constexpr auto least = static_cast<float>(flat);
+  const bool is_curved = ball > 0 && (curved[0] > least || curved[1] > least || curved[2] > least);
+  const bool is_thin = slab > 0 && (thin[0] > least || thin[1] > least || thin[2] > least);
+  if (!is_curved && !is_thin) return Rgb(pair.reach);
+
+  const Float4 lengths{static_cast<float>(std::max(curvature, 1e-30)),
+                       static_cast<float>(std::max(pair.inverse_thickness, 1e-30)),
+                       static_cast<float>(std::max(pair.distance, 1e-30)),
+                       static_cast<float>(std::max(pair.lateral, 1e-30))};
+  const Float4 log2_length = fast_log2(lengths), log2_path = fast_log2(path);
+  const Rows rows_of(albedo);
+  const int channels = albedo.is_grey() && sigma_t.is_grey() ? 1 : 3;
+  Float4 sum{};
+  if (is_curved) {
     const ShapeFamily family = pair.curvature > 0 ? ShapeFamily::ball : ShapeFamily::cavity;
-    log2_factor += static_cast<float>(ball) * look_up(table(family), family, size,
-                                                      node_position(family, 0.5 * pair.distance * curvature));
+    const Float4 size = size_position(curved, log2_path + log2_length[0]);
+    sum += ball * log2_factor(family, rows_of, size,
+                              node_position(family, log2_length[2] + log2_length[0] - 1), channels);
   }
-  if (slab > 0 && positions(pair.inverse_thickness, size)) {
-    Float4 thin{};
-    const auto near_share = static_cast<float>(slab * (1 - pair.far)),
-               far_share = static_cast<float>(slab * pair.far);
-    if (near_share > 0) {
-      const double node = node_position(ShapeFamily::slab_near, pair.distance * pair.inverse_thickness);
-      thin += near_share * look_up(table(ShapeFamily::slab_near), ShapeFamily::slab_near, size, node);
+  if (is_thin) {
+    Float4 sides{};
+    if (far < 1)
+      sides += (1 - far) *
+               log2_factor(ShapeFamily::slab_near, rows_of, size_position(thin, log2_path + log2_length[1]),
+                           node_position(ShapeFamily::slab_near, log2_length[2] + log2_length[1]), channels);
+    if (far > 0) {
+      const Float4 across{static_cast<float>(1 / pair.separation), static_cast<float>(pair.lateral), 1, 1};
+      const Float4 log2_across = fast_log2(across);
+      sides +=
+          far * log2_factor(ShapeFamily::slab_far, rows_of,
+                            size_position(across[0] * path, log2_path + log2_across[0]),
+                            node_position(ShapeFamily::slab_far, log2_across[1] + log2_across[0]), channels);
     }
-    if (far_share > 0) {
-      const double node = node_position(ShapeFamily::slab_far, pair.lateral * pair.inverse_thickness);
-      thin += far_share * look_up(table(ShapeFamily::slab_far), ShapeFamily::slab_far, size, node);
-    }
-    log2_factor += thin * thickness_fade(albedo, Rgb(pair.inverse_thickness) / sigma_t, g_);
+    sum += slab * thickness_fade(rows_of.remainder, thin, static_cast<float>(g_)) * sides;
   }
-  const Float4 factor = fast_exp2(log2_factor);
-  return {double{factor[0]}, double{factor[1]}, double{factor[2]}};
+  const Float4 factor = fast_exp2(sum);
+  if (channels == 1) return Rgb(pair.reach * double{factor[0]});
+  return pair.reach * Rgb(double{factor[0]}, double{factor[1]}, double{factor[2]});
 }
 
 double ShapeFamilies::factor(ShapeFamily family, double size, double distance, double albedo) const {
-  const bool slab = ShapeGrid::is_slab(family);
-  const double position = size_position(1 / size);
-  const double node = node_position(family, distance / (slab ? size : 2 * size));
-  const double positions[3] = {position, position, position};
-  return double{fast_exp2(Lookup(Rgb(albedo))(table(family), family, positions, node))[0]};
+  const double diameter = ShapeGrid::is_slab(family) ? size : 2 * size;
+  const Float4 inverse = Float4{} + static_cast<float>(1 / size);
+  const float node = node_position(family, static_cast<float>(std::log2(distance / diameter)));
+  return double{fast_exp2(
+      log2_factor(family, Rows(Rgb(albedo)), size_position(inverse, fast_log2(inverse)), node, 1))[0]};
 }
 
 }  // namespace alabaster

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/rgb.h"
+#include "optics/fast_math.h"
 #include "optics/shape_table.h"
 
 namespace alabaster {
@@ -13,9 +14,11 @@ struct PairShape {
   double distance = 0;           // chord
   double curvature = 0;          // of the ball (positive) or cavity (negative) that the pair lies on
   double inverse_thickness = 0;  // of the slab; 0: nothing behind
+  double separation = 0;         // of its sides at the pair, where one point is on the far side
   double lateral = 0;            // distance along the slab, for its far side
   double sphericity = 0;         // [0, 1]: 0 a slab, 1 a ball
   double far = 0;                // [0, 1]: 0 both points on one side of the slab, 1 on opposite sides
+  double reach = 1;              // [0, 1]: 0 where no medium is between the points, but a gap
 };
 
 /// Correction factors of curved and thin bodies over the half-space basis, by interpolation in a ShapeTable:
@@ -38,7 +41,8 @@ class ShapeFamilies {
   double factor(ShapeFamily family, double size, double distance, double albedo) const;
 
  private:
-  struct Lookup;
+  struct Rows;
+  Float4 log2_factor(ShapeFamily family, const Rows& rows_of, Float4 size, float node, int channels) const;
   const std::vector<float>& table(ShapeFamily family) const {
     return tables_[static_cast<std::size_t>(family)];
   }

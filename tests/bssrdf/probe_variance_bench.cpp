@@ -23,7 +23,7 @@ struct Worth {
 
 Worth worth_of_a_draw(const Body& body, const Bssrdf& model, double exits_within) {
   const ProbeSampler sampler(model, body.target());
-  constexpr int exits = 60, draws = 400;
+  constexpr int exits = 40, draws = 300;
   Rng rng(1);
   double variance = 0, mean = 0, empty = 0;
   int used = 0;

@@ -111,14 +111,14 @@ TEST_CASE("flat is exactly 1, and reached continuously") {
     for (const double d : {1e-3, 0.1, 1.0, 10.0, 1000.0}) {
       for (const double curvature : {0.0, 1e-16, 0.99e-5, -0.99e-5})
         for (const double sphericity : {0.0, 0.5, 1.0})
-          CHECK(factor({d, curvature, 0, d, sphericity, 0}, albedo) == 1.0);
+          CHECK(factor({d, curvature, 0, 1, d, sphericity, 0}, albedo) == 1.0);
       // Nothing behind, and behind ten diffusion lengths.
       const double length = diffusion_length(albedo, shapes.g());
       if (std::isfinite(length))
         for (const double far : {0.0, 0.5, 1.0})
-          CHECK(factor({d, 0, 1 / (10.01 * length), d, 0, far}, albedo) == 1.0);
+          CHECK(factor({d, 0, 1 / (10.01 * length), 10.01 * length, d, 0, far}, albedo) == 1.0);
       for (const double sign : {-1.0, 1.0})
-        CHECK(factor({std::min(d, 1e3), sign * 1.01e-5, 0, d, 1, 0}, albedo) == Approx(1).epsilon(0.01));
+        CHECK(factor({std::min(d, 1e3), sign * 1.01e-5, 0, 1, d, 1, 0}, albedo) == Approx(1).epsilon(0.01));
     }
   // Small steps of the arguments make small steps of the factor.
   for (const double albedo : {0.3, 0.95, 0.9999}) {
@@ -126,9 +126,9 @@ TEST_CASE("flat is exactly 1, and reached continuously") {
     for (int k = 0; k < 4000; ++k) {
       const double x = std::exp2(-18 + 20.0 * k / 4000);  // curvature or inverse thickness
       const double d = 0.7;
-      const double now[3] = {std::log(factor({d, x, 0, d, 1, 0}, albedo)),
-                             std::log(factor({d, -x, 0, d, 1, 0}, albedo)),
-                             std::log(factor({d, 0, x, d, 0, 0.3}, albedo))};
+      const double now[3] = {std::log(factor({d, x, 0, 1, d, 1, 0}, albedo)),
+                             std::log(factor({d, -x, 0, 1, d, 1, 0}, albedo)),
+                             std::log(factor({d, 0, x, 1 / x, d, 0, 0.3}, albedo))};
       for (int i = 0; i < 3; ++i) {
         if (k > 0) CHECK(std::abs(now[i] - before[i]) < 0.06);
         before[i] = now[i];
@@ -140,12 +140,12 @@ TEST_CASE("flat is exactly 1, and reached continuously") {
 TEST_CASE("three channels at once are the channels one by one") {
   const ShapeFamilies& shapes = baseline_shapes();
   const Rgb albedo(0.3, 0.9, 0.999), sigma_t(500, 1000, 2500);
-  const PairShape pair{0.003, 120, 200, 0.002, 0.4, 0.25};
+  const PairShape pair{0.003, 120, 200, 0.005, 0.002, 0.4, 0.25};
   const Rgb all = shapes.factor(pair, albedo, sigma_t);
   for (int c = 0; c < 3; ++c)
     CHECK(all[c] == Approx(shapes.factor(pair, Rgb(albedo[c]), Rgb(sigma_t[c])).r).epsilon(1e-6));
   // A pure ball is the ball's family.
-  const PairShape ball{0.003, 120, 200, 0.002, 1, 0.25};
+  const PairShape ball{0.003, 120, 200, 0.005, 0.002, 1, 0.25};
   CHECK(shapes.factor(ball, albedo, sigma_t)[1] ==
         Approx(shapes.factor(ShapeFamily::ball, 1000 / 120.0, 3, 0.9)).epsilon(1e-5));
 }
