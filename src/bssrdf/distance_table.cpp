@@ -17,6 +17,11 @@ constexpr int64_t first_code = int64_t{1023 + first_octave} * bins_per_octave;
 /// Of the mass, spread as 1/(1 + rho)^2, so that the density never underflows.
 constexpr double spread_share = 1e-3;
 
+/// Where a level's bins begin in the tables.
+std::size_t row_of(int level) {
+  return static_cast<std::size_t>(level) * (bin_count + 1);
+}
+
 int bin_of(double rho) {
   const auto code = static_cast<int64_t>(std::bit_cast<uint64_t>(rho) >> mantissa_shift) - first_code + 1;
   return static_cast<int>(std::clamp<int64_t>(code, 0, bin_count));
@@ -50,8 +55,8 @@ std::vector<double> bin_masses(const ProfileTable& profile, double albedo) {
 }  // namespace
 
 DistanceTable::DistanceTable(const ProfileTable& profile) {
-  density_.reserve(level_count * (bin_count + 1));
-  cumulative_.reserve(level_count * (bin_count + 1));
+  density_.reserve(row_of(level_count));
+  cumulative_.reserve(row_of(level_count));
   for (int level = 0; level < level_count; ++level) {
     const std::vector<double> mass = bin_masses(profile, std::max(albedo(level), 1e-6));
     double sum = 0;
@@ -76,9 +81,9 @@ int DistanceTable::level(double albedo) {
 }
 
 double DistanceTable::sample(int level, double u) const {
-  const double* row = cumulative_.data() + level * (bin_count + 1);
+  const double* row = cumulative_.data() + row_of(level);
   const auto bin = static_cast<int>(std::upper_bound(row, row + bin_count + 1, u) - row) - 1;
-  const double density = density_[static_cast<std::size_t>(level * (bin_count + 1) + bin)];
+  const double density = density_[row_of(level) + static_cast<std::size_t>(bin)];
   const double rest = u - row[bin];
   if (bin < bin_count) return std::min(edge(bin) + rest / density, edge(bin + 1));
   // P(rho > x) = density / x in the tail.
@@ -87,13 +92,13 @@ double DistanceTable::sample(int level, double u) const {
 
 double DistanceTable::pdf(int level, double rho) const {
   const int bin = bin_of(rho);
-  const double density = density_[static_cast<std::size_t>(level * (bin_count + 1) + bin)];
+  const double density = density_[row_of(level) + static_cast<std::size_t>(bin)];
   return bin < bin_count ? density : density / (rho * rho);
 }
 
 double DistanceTable::cdf(int level, double rho) const {
   const int bin = bin_of(rho);
-  const auto index = static_cast<std::size_t>(level * (bin_count + 1) + bin);
+  const std::size_t index = row_of(level) + static_cast<std::size_t>(bin);
   if (bin < bin_count) return cumulative_[index] + density_[index] * (rho - edge(bin));
   return 1 - density_[index] / rho;
 }

@@ -217,6 +217,22 @@ TEST_CASE("black stays black", "[bssrdf]") {
   }
 }
 
+TEST_CASE("sampling is never aimed below a hundredth of the brightest albedo", "[bssrdf]") {
+  // A bright spot far away, all but black around: its light must not be overlooked.
+  class Spot final : public AlbedoField {
+   public:
+    Rgb at(const SurfacePoint&) const override { return Rgb(1e-4); }
+    Rgb filtered(const KernelFootprint&) const override { return Rgb(1e-4); }
+    Rgb max() const override { return Rgb(0.9); }
+  };
+  const AnalyticProfile profile;
+  const Spot albedo;
+  const BssrdfMedium medium{&profile, Rgb(1), &albedo};
+  for (const char* name : {"composite", "composite:symmetric", "composite:order1", "aggregate"})
+    CHECK(model_on(name, medium, unit_plane)->typical_albedo(medium.point(on_plane(0, 0))).g ==
+          Approx(0.009));
+}
+
 TEST_CASE("setting order 1 apart bounds what eq. 2 does not", "[bssrdf]") {
   // Two bright ends across dark ground: eq. 2's order 1 grows as 1 / alpha_t, a single collision cannot.
   const AnalyticProfile profile;
