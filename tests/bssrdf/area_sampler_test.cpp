@@ -13,8 +13,8 @@ using namespace alabaster;
 TEST_CASE(
     "points by area: triangles by their area, uniform inside, none that does not count (chi-square, 1e-3)",
     "[bssrdf]") {
-  // An ellipsoid's triangles differ in area by more than a factor of ten; every third is left out.
-  const TriangleMesh mesh = make_ellipsoid(Vec3(1, 1, 4), 10);
+  // An ellipsoid's triangles differ in area several times over; every third is left out.
+  const TriangleMesh mesh = make_ellipsoid(Vec3(0.2, 1, 4), 10);
   const auto counts = [](uint32_t triangle) { return triangle % 3 != 0; };
   const AreaSampler sampler(mesh, counts);
   double area = 0, least = 1e9, most = 0;
@@ -25,7 +25,7 @@ TEST_CASE(
       most = std::max(most, mesh.area(t));
     }
   CHECK(sampler.area() == Approx(area));
-  REQUIRE(most > 5 * least);
+  REQUIRE(most > 3 * least);
 
   // Each triangle in four: its three corners' quarters and the middle, of equal area.
   const std::size_t cells = 4 * mesh.triangle_count();

@@ -74,6 +74,11 @@ TEST_CASE("the distance table has no gap and no end", "[bssrdf]") {
       CHECK(table.cdf(level, rho) == Approx(u).margin(1e-12));
       last = rho;
     }
+    // Far out, where what is left counts, not u itself.
+    for (const double left : {1e-4, 1e-5, 1e-6, 1e-7, 1e-9}) {
+      const double rho = table.sample(level, 1 - left);
+      CHECK(1 - table.cdf(level, rho) == Approx(left).epsilon(1e-5));
+    }
     for (const double rho : {0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e3, 1e5, 1e9}) CHECK(table.pdf(level, rho) > 0);
     CHECK(std::isfinite(table.sample(level, 1 - 0x1p-53)));
   }

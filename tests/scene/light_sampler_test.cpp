@@ -96,6 +96,33 @@ TEST_CASE("a disk is drawn by its density") {
   CHECK(test.mass == Approx(1).epsilon(3e-3));
 }
 
+TEST_CASE("a sample states the density of its direction") {
+  Scene sphere = emissive_sphere({0, 0, 4}, 1);
+  Scene disk;
+  disk.rays.commit();
+  disk.lights.push_back(DiskLight{{0, 0.5, 3}, glm::normalize(Vec3(0, -0.2, -1)), 1, Rgb(1)});
+  for (const Scene* scene : {&sphere, &disk}) {
+    const LightSampler sampler(*scene);
+    Rng rng(4);
+    int found = 0;
+    for (int i = 0; i < 500; ++i) {
+      const auto sample = sampler.sample(Vec3(0), Vec3(0), rng.uniform(), {rng.uniform(), rng.uniform()});
+      if (!sample) continue;
+      Ray ray;
+      ray.direction = sample->direction;
+      const auto hit = scene->rays.nearest(ray);
+      const auto on_disk = sampler.nearest_disk(ray);
+      if (!hit && !on_disk) continue;  // an edge of the mesh
+      ++found;
+      const double pdf = hit ? sampler.pdf_triangle(Vec3(0), Vec3(0), sample->direction, *hit)
+                             : sampler.pdf_disk(Vec3(0), Vec3(0), sample->direction, *on_disk);
+      CHECK(sample->distance == Approx(hit ? hit->t : on_disk->t).epsilon(1e-5));
+      CHECK(sample->pdf == Approx(pdf).epsilon(1e-4));
+    }
+    CHECK(found > 100);
+  }
+}
+
 TEST_CASE("several lights together are drawn by their densities") {
   Scene scene = emissive_sphere({0, 0, 4}, 1);
   scene.environment = make_sky_environment({});
@@ -186,7 +213,8 @@ TEST_CASE("a patch gives uniform radiance within its radius and nothing outside"
   scene.lights.push_back(PatchLight{{1, 0, 0}, 0.5, Rgb(2, 3, 4)});
   scene.lights.push_back(PatchLight{{1.5, 0, 0}, 0.5, Rgb(1)});
   const LightSampler sampler(scene);
-  CHECK(sampler.uniform_radiance({1, 0.49, 0}) == Rgb(2, 3, 4));
+  CHECK(sampler.uniform_radiance({1, 0.4999, 0}) == Rgb(2, 3, 4));
+  CHECK(sampler.uniform_radiance({1, -0.5001, 0}) == Rgb(0));
   CHECK(sampler.uniform_radiance({1.25, 0, 0}) == Rgb(3, 4, 5));
   CHECK(sampler.uniform_radiance({0, 0, 0}) == Rgb(0));
   CHECK_FALSE(sampler.has_lights());
