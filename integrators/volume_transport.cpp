@@ -37,7 +37,7 @@ void check_one_medium(const Scene& scene, const SceneObject& object, const std::
 }  // namespace
 
 VolumeTransport::VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
-                                 std::vector<uint8_t> boundary, const VolumeWalkOptions& options)
+                                 const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options)
     : name_(scene.objects[object].name),
       eta_(medium.eta),
       walk_(scene.rays, scene.objects[object].mesh, object, boundary, medium, *scene.objects[object].albedo,

@@ -12,8 +12,8 @@ class VolumeTransport final : public SubsurfaceTransport {
  public:
   /// Throws InputError where the object is open (naming an edge of its border) or where not all of its
   /// surface bounds the medium. The scene outlives the transport.
-  VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
-                  const VolumeWalkOptions& options);
+  VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
+                  const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options);
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
