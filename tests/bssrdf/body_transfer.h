@@ -11,12 +11,13 @@ namespace alabaster {
 
 /// Ways to light a body, seen from the exit: uniformly; from the front and from the back of the exit by a far
 /// light that casts no shadow (E = max(0, n . l)).
-enum class BodyLight { uniform, front, back };
+enum class TransferLight { uniform, front, back };
 inline constexpr int body_light_count = 3;
 
-inline double irradiance(BodyLight light, const Vec3& normal, const Vec3& exit_normal) {
+inline double irradiance(TransferLight light, const Vec3& normal, const Vec3& exit_normal) {
   const double cosine = glm::dot(normal, exit_normal);
-  return light == BodyLight::uniform ? 1 : std::max(0.0, light == BodyLight::front ? cosine : -cosine);
+  return light == TransferLight::uniform ? 1
+                                         : std::max(0.0, light == TransferLight::front ? cosine : -cosine);
 }
 
 inline constexpr std::array<double, 4> body_albedos{0.5, 0.8, 0.95, 0.99};
@@ -43,7 +44,7 @@ inline BodyRadiosity walk_radiosity(const AnalyticBody& body, const Vec3& exit, 
     for (std::size_t a = 0; a < body_albedos.size(); ++a) {
       const double weight = std::pow(body_albedos[a], static_cast<double>(photon.order));
       for (int l = 0; l < body_light_count; ++l) {
-        const double score = weight * irradiance(static_cast<BodyLight>(l), normal, exit_normal);
+        const double score = weight * irradiance(static_cast<TransferLight>(l), normal, exit_normal);
         sum.value[a][static_cast<std::size_t>(l)] += score;
         square.value[a][static_cast<std::size_t>(l)] += score * score;
       }
@@ -109,7 +110,7 @@ BodyRadiosity predicted_radiosity(const std::vector<BodyCell>& cells, const Vec3
     std::array<double, body_light_count> e{};
     for (int l = 0; l < body_light_count; ++l)
       e[static_cast<std::size_t>(l)] =
-          cell.area * irradiance(static_cast<BodyLight>(l), cell.shape.normal, shape.normal);
+          cell.area * irradiance(static_cast<TransferLight>(l), cell.shape.normal, shape.normal);
     for (std::size_t a = 0; a < body_albedos.size(); ++a) {
       const double s = basis(cell.position, cell.shape, exit, shape, body_albedos[a]);
       for (std::size_t l = 0; l < body_light_count; ++l) result.value[a][l] += s * e[l];
