@@ -17,6 +17,7 @@ constexpr double side_by_depth = 0.25;
 constexpr unsigned most_cells_logarithm = 4;  // base 2, along a side of a block
 constexpr uintptr_t side_bits = 15;
 constexpr uint32_t chunk_size = 1024, most_chunks = 1 << 16;
+constexpr std::size_t cells_per_chunk = 4096;
 constexpr uint32_t most_blocks_per_side = 160;
 // The relative variance that a collision may add to a walk's weight.
 constexpr double tolerated_variance = 0.03;
@@ -26,11 +27,29 @@ constexpr double worth_a_map = 0.03;
 // A cell that would send most walks to the exact query may as well send all.
 constexpr double hopeless_exactness = 0.7;
 
-// Of fractions in 16 bits.
-constexpr double steps = std::numeric_limits<uint16_t>::max();
+// Fractions in a number of bits.
+uint32_t rounded(double value, int bits) {
+  return static_cast<uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * ((1 << bits) - 1)));
+}
+double fraction(uint32_t value, int bits) {
+  const uint32_t mask = (1u << bits) - 1;
+  return (value & mask) * (1.0 / mask);
+}
 
-uint16_t rounded(double value) {
-  return static_cast<uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * steps));
+// Unit vectors in 24 bits: octahedron, unfolded (Cigolle et al. 2014).
+uint32_t packed(const Vec3& n) {
+  const double sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  Vec2 p(n.x / sum, n.y / sum);
+  if (n.z < 0)
+    p = Vec2((1 - std::abs(p.y)) * std::copysign(1.0, p.x), (1 - std::abs(p.x)) * std::copysign(1.0, p.y));
+  return rounded(0.5 * p.x + 0.5, 12) << 12 | rounded(0.5 * p.y + 0.5, 12);
+}
+Vec3 unpacked(uint32_t bits) {
+  const double x = 2 * fraction(bits >> 12, 12) - 1, y = 2 * fraction(bits, 12) - 1;
+  Vec3 n(x, y, 1 - std::abs(x) - std::abs(y));
+  if (n.z < 0)
+    n = Vec3((1 - std::abs(y)) * std::copysign(1.0, x), (1 - std::abs(x)) * std::copysign(1.0, y), n.z);
+  return glm::normalize(n);
 }
 
 double unit_number(uint64_t hash) {
@@ -58,16 +77,16 @@ Rgb clamped(const Rgb& albedo) {
 
 /// 16 bytes, since walks live on how many of them a processor's cache holds.
 struct alignas(16) AlbedoCells::Cell {
-  /// What follows is written by whoever takes the state from empty to busy. From `mapped` on: the number of
-  /// an affine map, which is the better guess.
+  /// What follows is written by whoever takes the state from empty to busy. From `first_map` on: the number
+  /// of an affine map, which is the better guess.
   std::atomic<uint32_t> state{empty};
-  float distance = 0;              // m, of the centre
-  std::array<uint16_t, 3> mean{};  // albedo, of 65535
-  uint16_t exactness = 0;          // of 65535
+  float distance = 0;   // m, of the centre
+  uint32_t mean = 0;    // albedo, ten bits a channel
+  uint32_t packed = 0;  // exactness, eight bits above the normal's 24
 
   enum : uint32_t { empty, busy, constant, first_map };
-  static double fraction(uint16_t v) { return v * (1 / steps); }
-  Rgb albedo() const { return {fraction(mean[0]), fraction(mean[1]), fraction(mean[2])}; }
+  Rgb albedo() const { return {fraction(mean >> 20, 10), fraction(mean >> 10, 10), fraction(mean, 10)}; }
+  double exactness() const { return fraction(packed >> 24, 8); }
 };
 
 /// From a cell to barycentric coordinates in the plane of a triangle.
@@ -92,7 +111,7 @@ struct AlbedoCells::Place {
 };
 
 AlbedoCells::AlbedoCells(const RayScene& rays, const TriangleMesh& mesh, uint32_t object,
-                         const AlbedoField& albedo, double length)
+                         const AlbedoField* albedo, double length)
     : rays_(rays), mesh_(mesh), object_(object), albedo_(albedo), length_(length), maps_(most_chunks) {
   const BoundingBox box = bounding_box(mesh);
   const Vec3 extent = box.high - box.low;
@@ -109,14 +128,12 @@ AlbedoCells::AlbedoCells(const RayScene& rays, const TriangleMesh& mesh, uint32_
 }
 
 AlbedoCells::~AlbedoCells() {
-  for (const std::atomic<uintptr_t>& block : blocks_)
-    delete[] reinterpret_cast<Cell*>(block.load() & ~side_bits);
   for (const std::atomic<Map*>& chunk : maps_) delete[] chunk.load();
 }
 
 AlbedoCells::View AlbedoCells::at(const Vec3& p) const {
   const double per_block = 1 / block_size_;
-  const Vec3 x = glm::max((p - low_) * per_block, Vec3(0));
+  const Vec3 in_blocks = (p - low_) * per_block, x = glm::max(in_blocks, Vec3(0));
   const Index3 place{std::min(static_cast<uint32_t>(x.x), count_[0] - 1),
                      std::min(static_cast<uint32_t>(x.y), count_[1] - 1),
                      std::min(static_cast<uint32_t>(x.z), count_[2] - 1)};
@@ -138,13 +155,21 @@ AlbedoCells::View AlbedoCells::at(const Vec3& p) const {
   }
   const Vec3 offset = p - centre;
   const double aside = glm::length(offset), distance = static_cast<double>(cell.distance);
-  View view{cell.albedo(), Cell::fraction(cell.exactness), distance * (1 - 0x1p-22) - aside,
+  View view{cell.albedo(),
+            cell.exactness(),
+            unpacked(cell.packed),
+            distance,
+            distance * (1 - 0x1p-22) - aside,
             distance * (1 + 0x1p-22) + aside};
   if (state != Cell::constant) {
     const Map& map = this->map(state - Cell::first_map);
     view.triangle = map.triangle;
     if (view.exactness < 1) view.albedo = mapped(map, offset);
   }
+  // Behind an open sheet walks leave the grid, and what the cells at its rim know does not hold.
+  const bool outside = std::min({in_blocks.x, in_blocks.y, in_blocks.z}) < 0 || in_blocks.x > count_[0] ||
+                       in_blocks.y > count_[1] || in_blocks.z > count_[2];
+  if (outside) view.exactness = 1;
   return view;
 }
 
@@ -153,7 +178,7 @@ const AlbedoCells::Map& AlbedoCells::map(uint32_t number) const {
 }
 
 uint32_t AlbedoCells::keep(const Map& map) const {
-  const std::lock_guard<std::mutex> lock(map_mutex_);
+  const std::lock_guard<std::mutex> lock(mutex_);
   const uint32_t number = map_count_++;
   std::atomic<Map*>& chunk = maps_[number / chunk_size];
   if (chunk.load() == nullptr) {
@@ -173,7 +198,7 @@ Rgb AlbedoCells::mapped(const Map& map, const Vec3& offset) const {
                            gradient[1] * offset.y + gradient[2] * offset.z;
   }
   point.uv = mesh_.uv(map.triangle, point.barycentric);
-  return clamped(albedo_.at(point));
+  return clamped(albedo_->at(point));
 }
 
 uintptr_t AlbedoCells::make_block(std::size_t index, const Vec3& centre) const {
@@ -184,16 +209,25 @@ uintptr_t AlbedoCells::make_block(std::size_t index, const Vec3& centre) const {
   const double wanted = std::max(finest_side * length_, side_by_depth * depth);
   unsigned logarithm = 0;
   while (logarithm < most_cells_logarithm && block_size_ / (1 << logarithm) > 1.01 * wanted) ++logarithm;
-  const std::size_t count = std::size_t{1} << (3 * logarithm);
-  auto* const cells = new Cell[count];
-  const uintptr_t made = reinterpret_cast<uintptr_t>(cells) | logarithm;
-  uintptr_t block = 0;
-  if (blocks_[index].compare_exchange_strong(block, made)) {
-    bytes_ += count * sizeof(Cell);
-    return made;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  uintptr_t block = blocks_[index].load();
+  if (block == 0) {  // else another thread was faster, and made the same
+    block = reinterpret_cast<uintptr_t>(new_cells(std::size_t{1} << (3 * logarithm))) | logarithm;
+    blocks_[index].store(block, std::memory_order_release);
   }
-  delete[] cells;  // another thread was faster; its block is the same
   return block;
+}
+
+// From chunks, so that cells made one after the other lie side by side.
+AlbedoCells::Cell* AlbedoCells::new_cells(std::size_t count) const {
+  if (count > cells_left_) {
+    cells_left_ = std::max(cells_per_chunk, count);
+    cell_chunks_.push_back(std::make_unique<Cell[]>(cells_left_));
+    bytes_ += cells_left_ * sizeof(Cell);
+  }
+  Cell* const last = cell_chunks_.back().get();
+  cells_left_ -= count;
+  return last + cells_left_;
 }
 
 AlbedoCells::Sample AlbedoCells::sample(const Vec3& p, double radius, uint32_t guess) const {
@@ -207,7 +241,7 @@ AlbedoCells::Sample AlbedoCells::sample(const Vec3& p, double radius, uint32_t g
   point.uv = mesh_.uv(closest->triangle, closest->barycentric);
   result.closest = closest->position;
   result.distance = closest->distance;
-  result.albedo = albedo_.at(point);
+  if (albedo_ != nullptr) result.albedo = albedo_->at(point);
   return result;
 }
 
@@ -222,7 +256,8 @@ void AlbedoCells::fill(Cell& cell, const Place& place) const {
   cell.distance = static_cast<float>(middle.distance);
   // Every second octant and the centre first: where they agree, that is enough.
   std::vector<Sample> samples{middle};
-  for (const int octant : {0, 3, 5, 6}) samples.push_back(sample_octant(place, octant, middle));
+  if (albedo_ != nullptr)
+    for (const int octant : {0, 3, 5, 6}) samples.push_back(sample_octant(place, octant, middle));
   double variance = set_mean(cell, samples);
   uint32_t state = Cell::constant;
   if (variance > worth_a_map * tolerated_variance && middle.triangle != no_index) {
@@ -239,7 +274,8 @@ void AlbedoCells::fill(Cell& cell, const Place& place) const {
     // Where all queries are exact the map at least knows a triangle to begin with.
     if (better || exactness(variance) >= 1) state = Cell::first_map + keep(map);
   }
-  cell.exactness = rounded(exactness(variance));
+  const Vec3 normal = middle.triangle != no_index ? mesh_.geometric_normal(middle.triangle) : Vec3(0, 0, 1);
+  cell.packed = rounded(exactness(variance), 8) << 24 | packed(normal);
   cell.state.store(state, std::memory_order_release);
 }
 
@@ -260,9 +296,10 @@ double AlbedoCells::set_mean(Cell& cell, const std::vector<Sample>& samples) {
   const auto count = static_cast<double>(samples.size());
   Rgb mean;
   for (const Sample& s : samples) mean += s.albedo / count;
-  for (int c = 0; c < 3; ++c) cell.mean[static_cast<std::size_t>(c)] = rounded(mean[c]);
+  cell.mean = rounded(mean.r, 10) << 20 | rounded(mean.g, 10) << 10 | rounded(mean.b, 10);
   double variance = 0;
-  for (const Sample& s : samples) variance += relative_square(s.albedo - mean, mean) / (count - 1);
+  for (const Sample& s : samples)
+    variance += relative_square(s.albedo - mean, mean) / std::max(1.0, count - 1);
   return variance;
 }
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -24,19 +25,21 @@ namespace alabaster {
 /// A cell's contents depend on its place only, never on the walks or on the number of threads. Thread-safe.
 class AlbedoCells {
  public:
-  /// `length`, m: the scale at which cells are made, a mean free path. Everything passed by reference
-  /// outlives this.
-  AlbedoCells(const RayScene& rays, const TriangleMesh& mesh, uint32_t object, const AlbedoField& albedo,
+  /// `length`, m: the scale at which cells are made, a mean free path. Without an albedo the cells know the
+  /// surface alone. Everything passed by reference outlives this.
+  AlbedoCells(const RayScene& rays, const TriangleMesh& mesh, uint32_t object, const AlbedoField* albedo,
               double length);
   ~AlbedoCells();
   AlbedoCells(const AlbedoCells&) = delete;
   AlbedoCells& operator=(const AlbedoCells&) = delete;
 
   struct View {
-    Rgb albedo;                    // the guess
-    double exactness = 1;          // probability with which the exact albedo has to be asked for, (0, 1]
-    double clearance = 0;          // m: no surface is closer to the point; may be negative
-    double reach = 0;              // m: some surface is at most this close to the point
+    Rgb albedo;            // the guess
+    double exactness = 1;  // probability with which the exact albedo has to be asked for, (0, 1]
+    Vec3 normal{0};        // of the surface closest to the cell's centre: unit, outwards, at one point
+    double depth = 0;      // m: how far that is
+    double clearance = 0;  // m: no surface is closer to the point; may be negative
+    double reach = 0;      // m: some surface is at most this close to the point
     uint32_t triangle = no_index;  // one that may be close, for the exact query
   };
   View at(const Vec3& p) const;
@@ -50,6 +53,7 @@ class AlbedoCells {
   struct Map;
   struct Sample;
   struct Place;
+  Cell* new_cells(std::size_t count) const;
   uintptr_t make_block(std::size_t index, const Vec3& centre) const;
   void fill(Cell& cell, const Place& place) const;
   Sample sample(const Vec3& p, double radius, uint32_t guess) const;
@@ -63,7 +67,7 @@ class AlbedoCells {
   const RayScene& rays_;
   const TriangleMesh& mesh_;
   uint32_t object_;
-  const AlbedoField& albedo_;
+  const AlbedoField* albedo_;
   double length_;
   Vec3 low_{0};            // m: corner of the grid
   double block_size_ = 1;  // m
@@ -72,7 +76,9 @@ class AlbedoCells {
   mutable std::vector<std::atomic<uintptr_t>> blocks_;
   mutable std::vector<std::atomic<Map*>> maps_;  // in chunks, which never move
   mutable uint32_t map_count_ = 0;
-  mutable std::mutex map_mutex_;
+  mutable std::vector<std::unique_ptr<Cell[]>> cell_chunks_;
+  mutable std::size_t cells_left_ = 0;  // in the last chunk
+  mutable std::mutex mutex_;            // of what grows
   mutable std::atomic<int64_t> queries_{0};
   mutable std::atomic<std::size_t> bytes_{0};
 };

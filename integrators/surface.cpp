@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/frame.h"
 #include "integrators/bssrdf_transport.h"
+#include "integrators/volume_checks.h"
 #include "integrators/volume_transport.h"
 #include "optics/fresnel.h"
 
@@ -13,6 +14,7 @@ namespace alabaster {
 
 namespace {
 
+constexpr double default_angular_size = pi / 180;
 // Chains of mirrors and internal reflections end here at the latest.
 constexpr int max_specular_chain = 64;
 
@@ -76,7 +78,11 @@ struct SurfaceIntegrator::Arrival {
 };
 
 SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& options)
-    : scene_(scene), options_(options), lights_(scene) {
+    : scene_(scene),
+      options_(options),
+      lights_(scene, options.angular_size.value_or(
+                         options.transport == Transport::bssrdf ? 0 : default_angular_size)),
+      guide_(scene, lights_) {
   const double reach = std::max(glm::length(scene.bounds.low), glm::length(scene.bounds.high));
   offset_ = 0x1p-20 * reach;  // a few units in the last place of Embree's floats
   for (const Material& material : scene.materials) {
@@ -84,6 +90,7 @@ SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& o
     const double eta = material.medium ? material.medium->eta : material.ior;
     interfaces_.push_back({eta, diffuse_transmittance(eta)});
   }
+  if (options.transport != Transport::bssrdf) check_media_apart(scene);
   prepare_bodies();
 }
 
@@ -119,15 +126,14 @@ std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t 
   if (options_.transport == Transport::bssrdf)
     return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
                                              options_.basis, options_.placement);
-  for (const Light& light : scene_.lights)
-    if (std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
-        std::holds_alternative<DirectionalLight>(light))
-      throw InputError(scene_.name,
-                       "light without size: no walk through a smooth boundary can meet it; use a disk "
-                       "light or an environment, or --integrator surface");
+  if (lights_.has_sizeless())
+    throw InputError(scene_.name,
+                     "light without size: no walk through a smooth boundary can meet it; give it one with "
+                     "--angular-size, or use --integrator surface");
   VolumeWalkOptions walk = options_.walk;
   walk.albedo = options_.transport == Transport::walk ? WalkAlbedo::exit : WalkAlbedo::closest_point;
-  return std::make_unique<VolumeTransport>(scene_, object, medium, std::move(boundary), walk);
+  return std::make_unique<VolumeTransport>(scene_, object, medium, std::move(boundary), walk,
+                                           lights_.has_concentrated() ? &guide_ : nullptr);
 }
 
 std::vector<std::string> SurfaceIntegrator::report() const {
@@ -150,16 +156,18 @@ PixelSample SurfaceIntegrator::sample(int x, int y, const Sampler& sampler) cons
   PixelSample result;
   const uint32_t vertex = path.vertices++;
   const auto hit = scene_.rays.nearest(ray, opacity_number(path, vertex));
-  result.radiance = disks(ray, hit ? hit->t : ray.t_max, arrival);
+  const bool direct = shows(Layer::unscattered, arrival);
+  if (direct) result.radiance = disks(ray, hit ? hit->t : ray.t_max, arrival);
   if (!hit) {
-    result.radiance += environment(ray, arrival);
+    if (direct) result.radiance += environment(ray, arrival);
     result.alpha = options_.environment_visible && scene_.environment ? 1
                    : result.radiance.is_black()                       ? 0
                                                                       : 1;
     return result;
   }
   const Interaction it = make_interaction(scene_, ray, *hit);
-  result.radiance += emission(ray, *hit, arrival) + outgoing(it, arrival, path);
+  if (direct) result.radiance += emission(ray, *hit, arrival);
+  result.radiance += outgoing(it, arrival, path);
   result.alpha = 1;
   result.hit = true;
   result.albedo = it.base_colour;
@@ -183,6 +191,11 @@ Rgb SurfaceIntegrator::incoming(const Ray& ray, const Arrival& arrival, Path& pa
   return sum + outgoing(make_interaction(scene_, ray, *hit), survivor, path) / survival;
 }
 
+bool SurfaceIntegrator::shows(Layer layer, const Arrival& arrival) const {
+  const bool first = arrival.bounces == 0 && arrival.chain == 0;
+  return !first || options_.layer == Layer::all || options_.layer == layer;
+}
+
 Rgb SurfaceIntegrator::environment(const Ray& ray, const Arrival& arrival) const {
   if (!scene_.environment || (arrival.camera && !options_.environment_visible)) return Rgb();
   const Rgb radiance = scene_.environment->radiance(ray.direction);
@@ -194,11 +207,19 @@ Rgb SurfaceIntegrator::environment(const Ray& ray, const Arrival& arrival) const
 Rgb SurfaceIntegrator::disks(const Ray& ray, double t_max, const Arrival& arrival) const {
   Ray until = ray;
   until.t_max = t_max;
-  const auto hit = lights_.nearest_disk(until);
-  if (!hit) return Rgb();
-  if (arrival.pdf == 0) return hit->radiance;
-  return hit->radiance *
-         arrival.weight_against(lights_.pdf_disk(arrival.origin, arrival.normal, ray.direction, *hit));
+  Rgb sum;
+  if (const auto hit = lights_.nearest_disk(until)) {
+    const double pdf =
+        arrival.pdf == 0 ? 0 : lights_.pdf_disk(arrival.origin, arrival.normal, ray.direction, *hit);
+    sum += hit->radiance * arrival.weight_against(pdf);
+  }
+  // The camera does not see what stands for a light without size.
+  for (std::size_t i = 0; i < lights_.cone_count() && !arrival.camera; ++i)
+    if (const auto hit = lights_.cone(i, until))
+      sum +=
+          hit->radiance * arrival.weight_against(
+                              arrival.pdf == 0 ? 0 : lights_.pdf_cone(arrival.origin, arrival.normal, *hit));
+  return sum;
 }
 
 Rgb SurfaceIntegrator::emission(const Ray& ray, const Hit& hit, const Arrival& arrival) const {
@@ -227,6 +248,7 @@ Rgb SurfaceIntegrator::outgoing(const Interaction& it, const Arrival& arrival, P
     // The body comes first, whatever the mirror ray meets: its random numbers stay stratified over samples.
     const uint32_t vertex = path.vertices;
     const Rgb body = from_body(it, arrival, path);
+    if (!shows(Layer::mirror, arrival)) return body;
     // A blurred and faint mirror image is not worth two rays every time.
     const double q = it.roughness.is_smooth() ? 1 : std::clamp(4 * strength, 0.25, 1.0);
     if (q < 1 && path.sampler.get_1d(Dimension::lobe, vertex) >= q) return body;
@@ -292,16 +314,21 @@ Rgb SurfaceIntegrator::from_body(const Interaction& it, const Arrival& arrival, 
   const Body* below = body(it);
   if (below == nullptr && it.material->transmission > 0) {
     if (path.sampler.get_1d(Dimension::specular_path, vertex) < it.material->transmission)
-      return options_.specular ? transmission * straight_through(it, arrival, path) : Rgb();
+      return options_.specular && shows(Layer::unscattered, arrival)
+                 ? transmission * straight_through(it, arrival, path)
+                 : Rgb();
   } else if (below != nullptr) {
     const bool scatter_below =
         it.subsurface >= 1 || path.sampler.get_1d(Dimension::specular_path, vertex) < it.subsurface;
     if (scatter_below) {
-      Rgb sum = subsurface(it, *below, arrival, path);
-      if (options_.specular) sum += unscattered(it, *below, arrival, path);
+      Rgb sum;
+      if (shows(Layer::scattered, arrival)) sum += subsurface(it, *below, arrival, path);
+      if (options_.specular && shows(Layer::unscattered, arrival))
+        sum += unscattered(it, *below, arrival, path);
       return transmission * sum;
     }
   }
+  if (!shows(Layer::scattered, arrival)) return Rgb();
   const Rgb reflectance = it.base_colour;
   const double lobe = 1 / (pi * interface.diffuse_transmittance);
   return transmission * lobe * reflectance *
@@ -335,7 +362,8 @@ Rgb SurfaceIntegrator::subsurface(const Interaction& it, const Body& body, const
 // What a walk meets where it left: lights in full, since no light sampling can reach through the boundary.
 Rgb SurfaceIntegrator::entering_along(const SubsurfaceEntry& entry, const Arrival& arrival,
                                       Path& path) const {
-  Arrival next = arrival.specular(entry.weight.max());
+  // Weights of walks may be negative.
+  Arrival next = arrival.specular(std::max(entry.weight.max(), -entry.weight.min()));
   ++next.bounces;
   next.chain = 0;
   return incoming(leaving(entry.point, *entry.direction), next, path) +

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bssrdf/basis.h"
 #include "integrators/integrator.h"
 #include "integrators/interaction.h"
+#include "integrators/light_guide.h"
 #include "integrators/subsurface_transport.h"
 #include "integrators/volume_walk.h"
 #include "scene/light_sampler.h"
@@ -21,6 +23,14 @@ enum class Transport {
   walk     // the same walks with the exit's albedo everywhere
 };
 
+/// What the first surface sends to the camera, in parts that add up to the whole.
+enum class Layer {
+  all,
+  scattered,    // left a body after it scattered there, diffuse bodies included
+  unscattered,  // crossed a medium or a thin wall without scattering; also what is seen of lights themselves
+  mirror        // was reflected by the interface
+};
+
 struct SurfaceOptions {
   int width = 512, height = 512;  // of the whole image, pixels
   Camera camera;
@@ -32,6 +42,11 @@ struct SurfaceOptions {
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;
   bool environment_visible = true;  // to camera rays
+  Layer layer = Layer::all;
+  /// Full angle, radians, that point, spot and directional lights fill as seen from every point, with the
+  /// irradiance they give kept; 0: they have no size. Absent: 0 for Transport::bssrdf and one degree for
+  /// walks, which cannot find lights without size through a smooth boundary.
+  std::optional<double> angular_size;
   /// Without: neither the mirror term nor light that never scattered, only what left a surface's body.
   bool specular = true;
 };
@@ -63,6 +78,7 @@ class SurfaceIntegrator final : public Integrator {
   /// Radiance that comes in along a ray.
   Rgb incoming(const Ray& ray, const Arrival& arrival, Path& path) const;
   Rgb environment(const Ray& ray, const Arrival& arrival) const;
+  bool shows(Layer layer, const Arrival& arrival) const;
   Rgb disks(const Ray& ray, double t_max, const Arrival& arrival) const;
   Rgb emission(const Ray& ray, const Hit& hit, const Arrival& arrival) const;
   /// What a surface sends towards the ray's origin, emission apart.
@@ -96,6 +112,7 @@ class SurfaceIntegrator final : public Integrator {
   const Scene& scene_;
   SurfaceOptions options_;
   LightSampler lights_;
+  LightGuide guide_;
   double offset_;  // m: how far rays start off a surface
   bool stochastic_opacity_ = false;
   std::vector<Interface> interfaces_;  // per material

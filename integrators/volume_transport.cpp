@@ -4,45 +4,18 @@
 
 #include <cmath>
 
-#include "core/error.h"
+#include "integrators/volume_checks.h"
 
 namespace alabaster {
 
-namespace {
-
-void check_closed(const Scene& scene, const SceneObject& object) {
-  if (object.report.closed) return;
-  std::string where;
-  if (object.report.border_example.size() == 2) {
-    const Vec3 &a = object.report.border_example[0], &b = object.report.border_example[1];
-    where = fmt::format(", one from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", a.x, a.y, a.z, b.x,
-                        b.y, b.z);
-  }
-  throw InputError(
-      scene.name, "object '" + object.name + "'",
-      fmt::format("walks through the volume need a closed mesh and this has {} border edges{}; close it or "
-                  "use --integrator surface",
-                  object.report.border_edges, where));
-}
-
-void check_one_medium(const Scene& scene, const SceneObject& object, const std::vector<uint8_t>& boundary) {
-  for (const uint16_t material : object.mesh.materials)
-    if (boundary[material] == 0)
-      throw InputError(
-          scene.name, "object '" + object.name + "'",
-          "its material '" + scene.materials[material].name +
-              "' does not bound the same medium as the rest; split the object or use --integrator surface");
-}
-
-}  // namespace
-
 VolumeTransport::VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
-                                 const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options)
+                                 const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options,
+                                 const LightGuide* guide)
     : name_(scene.objects[object].name),
       eta_(medium.eta),
       walk_(scene.rays, scene.objects[object].mesh, object, boundary, medium, *scene.objects[object].albedo,
-            options) {
-  check_closed(scene, scene.objects[object]);
+            options, guide) {
+  if (!options.open_sheets) check_closed(scene, scene.objects[object]);
   check_one_medium(scene, scene.objects[object], boundary);
 }
 

@@ -11,9 +11,10 @@ namespace alabaster {
 class VolumeTransport final : public SubsurfaceTransport {
  public:
   /// Throws InputError where the object is open (naming an edge of its border) or where not all of its
-  /// surface bounds the medium. The scene outlives the transport.
+  /// surface bounds the medium. The scene and the guide (or null) outlive the transport.
   VolumeTransport(const Scene& scene, uint32_t object, const Medium& medium,
-                  const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options);
+                  const std::vector<uint8_t>& boundary, const VolumeWalkOptions& options,
+                  const LightGuide* guide);
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;

@@ -11,6 +11,7 @@
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
 #include "integrators/albedo_cells.h"
+#include "integrators/light_guide.h"
 #include "scene/medium.h"
 #include "texture/albedo_field.h"
 
@@ -31,6 +32,10 @@ enum class ClosestPointMode {
 struct VolumeWalkOptions {
   WalkAlbedo albedo = WalkAlbedo::closest_point;
   ClosestPointMode closest_point = ClosestPointMode::cached;
+  /// Without, light is found by walks that happen to leave towards it.
+  bool guided = true;
+  /// An open mesh counts as the front of a medium that fills all space behind it; without, it is refused.
+  bool open_sheets = false;
   /// Paths are cut after this many collisions; what is lost is counted. A guard against endless loops at
   /// albedo 1, not a parameter of quality.
   int64_t max_order = 10'000'000;
@@ -47,13 +52,19 @@ struct VolumeWalkExit {
 /// Random walks through the medium of one closed object with a smooth dielectric boundary (DESIGN section 1,
 /// "Volumetric meaning of a 2.5D texture"). Walks run backwards, from just below a surface point to where
 /// light came in; by reciprocity of the boundary and of the phase function that is the same as forwards.
-/// Thread-safe.
+///
+/// With a guide, collisions near the surface also look for light: a direction is drawn from the guide and the
+/// straight way out that refracts into it is searched for, facet by facet. Of all the ways one walk found,
+/// its own exit among them, one is kept in proportion to what it promises. Both ways of leaving are combined
+/// by the balance heuristic (docs/volumetric_reference.md). Thread-safe.
 class VolumeWalk {
  public:
   /// `boundary` has one flag per material index: whether the medium lies below its triangles; where it is 0
-  /// light is absorbed. Everything passed by reference outlives the walk.
+  /// light is absorbed. Everything passed by reference outlives the walk, the guide too; without one only the
+  /// walk's own exit counts.
   VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t object, std::vector<uint8_t> boundary,
-             const Medium& medium, const AlbedoField& albedo, const VolumeWalkOptions& options);
+             const Medium& medium, const AlbedoField& albedo, const VolumeWalkOptions& options,
+             const LightGuide* guide = nullptr);
 
   /// Walks from `start` on the boundary in `direction` (unit, inside). Nothing where the path was absorbed or
   /// ended by Russian roulette. An exit of order 0 is light that never scattered.
@@ -69,12 +80,23 @@ class VolumeWalk {
   const AlbedoCells* cells() const { return cells_.get(); }
 
  private:
+  struct Vertex;
+  struct Crossing;
+  struct Candidate;
   struct State;
   bool advance(State& state, Rng& rng) const;
   bool collide(State& state, Rng& rng) const;
+  bool meet_boundary(State& state, const Hit& hit, Rng& rng) const;
+
   std::optional<Rgb> albedo(State& state, Rng& rng) const;
   std::optional<Rgb> exact_albedo(State& state, double reach, uint32_t guess) const;
-  bool meet_boundary(State& state, const Hit& hit, Rng& rng) const;
+
+  // Light that is looked for: light_search.cpp.
+  void look_for_light(State& state, Rng& rng) const;
+  std::optional<Crossing> search(const Vertex& vertex, const Vec3& outside, int64_t& rays) const;
+  Rgb weight_of(const Vertex& vertex, const Crossing& crossing, double light_pdf) const;
+  Rgb weight_of_exit(State& state) const;
+  std::optional<VolumeWalkExit> choose_exit(State& state, Rng& rng) const;
 
   const RayScene& rays_;
   const TriangleMesh& mesh_;
@@ -86,6 +108,7 @@ class VolumeWalk {
   double slack_;  // m: what single precision may be off by
   const AlbedoField& albedo_;
   VolumeWalkOptions options_;
+  const LightGuide* guide_;
   std::unique_ptr<AlbedoCells> cells_;
   mutable Counts counts_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <utility>
@@ -102,6 +103,18 @@ void say_closing_line(const RenderResult& result, const fs::path& output) {
                      result.rejected));
 }
 
+void say_angular_size(const Scene& scene, const RenderSettings& settings) {
+  const auto sizeless = std::count_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light) ||
+           std::holds_alternative<DirectionalLight>(light);
+  });
+  const double degrees = settings.angular_size.value_or(settings.integrator == "surface" ? 0 : 1);
+  if (sizeless > 0 && degrees > 0)
+    say(fmt::format(
+        "{}: its {} point, spot and directional light{} fill {:g} degree{}; change it with --angular-size",
+        scene.name, sizeless, sizeless == 1 ? "" : "s", degrees, degrees == 1 ? "" : "s"));
+}
+
 SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scene, const Camera& camera) {
   SurfaceOptions options;
   options.width = settings.width;
@@ -114,6 +127,8 @@ SurfaceOptions surface_options(const RenderSettings& settings, const Scene& scen
   options.basis = settings.basis == "shape" ? Basis::shape : Basis::half_space;
   options.walk = settings.walk;
   options.placement = settings.placement;
+  options.layer = settings.layer;
+  if (settings.angular_size) options.angular_size = *settings.angular_size * pi / 180;
   options.depth = settings.depth;
   options.environment_visible = scene.environment_visible && !settings.load.hide_environment;
   return options;
@@ -208,6 +223,7 @@ bool run_render_job(const RenderJob& job, SceneCache& scenes) {
     const fs::path output = table ? numbered(job.output, frame + 1) : job.output;
     const fs::path png =
         table && !settings.png.empty() ? numbered(settings.png, frame + 1) : fs::path(settings.png);
+    if (frame == 0) say_angular_size(scene, settings);
     const SurfaceIntegrator integrator(
         scene, surface_options(settings, scene, turned(camera, scene, 2 * pi * frame / frames)));
     const RenderResult result = render(integrator, render_options(settings, output.filename().string()));

@@ -104,6 +104,26 @@ void set_placement(RenderSettings& s, const Value& v) {
   s.placement = v.text;
 }
 
+void set_guide(RenderSettings& s, const Value& v) {
+  if (v.text != "light" && v.text != "none") v.refuse("is not known; use light or none");
+  s.walk.guided = v.text == "light";
+}
+
+void set_open(RenderSettings& s, const Value& v) {
+  if (v.text != "refuse" && v.text != "sheet") v.refuse("is not known; use refuse or sheet");
+  s.walk.open_sheets = v.text == "sheet";
+}
+
+void set_layer(RenderSettings& s, const Value& v) {
+  static const std::map<std::string, Layer> layers{{"all", Layer::all},
+                                                   {"scattered", Layer::scattered},
+                                                   {"unscattered", Layer::unscattered},
+                                                   {"mirror", Layer::mirror}};
+  const auto found = layers.find(v.text);
+  if (found == layers.end()) v.refuse("is not known; use all, scattered, unscattered or mirror");
+  s.layer = found->second;
+}
+
 void set_sampler(RenderSettings& s, const Value& v) {
   try {
     s.sampler = sampler_kind_from_name(v.text);
@@ -135,6 +155,11 @@ const std::vector<Option>& options() {
       {{"basis", "NAME", "half-space (the default) or shape", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},
+      {{"guide", "NAME", "of volume and walk: look for light (the default) or none", true}, set_guide},
+      {{"open", "NAME", "of volume and walk: refuse open meshes (the default) or take them as a sheet over a half-space", true}, set_open},
+      {{"angular_size", "DEGREES", "of point, spot and directional lights; 0: none (surface 0, volume and walk 1)", true},
+       [](S& s, const Value& v) { s.angular_size = real(v, 0, 90, "of degrees from 0 to 90"); }},
+      {{"layer", "NAME", "all (the default), scattered, unscattered or mirror: they add up", true}, set_layer},
       {{"sampler", "NAME", "sobol (the default) or independent", true}, set_sampler},
       {{"size", "WxH", "pixels of the whole image (512x512)", true}, set_size},
       {{"crop", "X0,Y0,X1,Y1", "render this part only, pixels from the top left", true}, set_crop},

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "integrators/render.h"
-#include "integrators/volume_walk.h"
+#include "integrators/surface.h"
 #include "scene/scene_file.h"
 
 namespace alabaster {
@@ -41,6 +41,8 @@ struct RenderSettings {
   double exposure = 0;  // stops
   bool quiet = false;
   VolumeWalkOptions walk;
+  Layer layer = Layer::all;
+  std::optional<double> angular_size;  // degrees
   LoadOptions load;
 
   /// What was asked for, or 64, or without end when there is only a time limit.

@@ -53,6 +53,14 @@ double delta_weight(const Light& light, const Vec3& point, const Vec3& normal) {
   return sample && faces(normal, sample->direction) ? sample->radiance.mean() : 0;
 }
 
+/// A cone counts as soon as a part of it is above the horizon.
+double cone_weight(const Light& light, const Vec3& point, const Vec3& normal, double half_cosine) {
+  const auto sample = delta_sample(light, point);
+  const double half_sine = std::sqrt(std::max(0.0, 1 - half_cosine * half_cosine));
+  const bool above = sample && (normal == Vec3(0) || glm::dot(normal, sample->direction) > -half_sine);
+  return above ? sample->radiance.mean() : 0;
+}
+
 double disk_weight(const DiskLight& disk, const Vec3& point, const Vec3& normal) {
   const Vec3 offset = point - disk.position;
   const double height = glm::dot(offset, disk.direction);
@@ -64,6 +72,26 @@ double disk_weight(const DiskLight& disk, const Vec3& point, const Vec3& normal)
   const double cosine = std::max(height / std::sqrt(squared), 0.05);
   return disk.radiance.mean() * cosine * area / (squared + disk.radius * disk.radius);
 }
+
+/// Per solid angle, of points drawn uniformly from the disk.
+double density_on_disk(const DiskLight& disk, const Vec3& direction, double distance) {
+  const double cosine = -glm::dot(direction, disk.direction);
+  return cosine > 0 ? distance * distance / (cosine * pi * disk.radius * disk.radius) : 0;
+}
+
+/// Mean square over squared mean of the radiance, over the sphere: 1 for a constant environment, large where
+/// little of the sphere holds the light.
+double contrast(const Environment& environment) {
+  constexpr int side = 32;
+  double sum = 0;
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const auto sample = environment.sample({(i + 0.5) / side, (j + 0.5) / side});
+      if (sample && sample->pdf > 0) sum += std::pow(sample->radiance.mean(), 2) / sample->pdf;
+    }
+  return sum / (side * side) / (4 * pi) / std::pow(environment.mean_radiance().mean(), 2);
+}
+constexpr double concentrated_contrast = 10;
 
 // Emission averaged over corners, edge midpoints and centre, and a part of the untextured value so that no
 // triangle that could emit is left out.
@@ -83,10 +111,16 @@ double emission_estimate(const Material& material, const TriangleMesh& mesh, uin
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
+LightSampler::LightSampler(const Scene& scene, double angular_size)
+    : scene_(scene),
+      cone_cosine_(std::cos(0.5 * angular_size)),
+      cone_projected_solid_angle_(pi * std::pow(std::sin(0.5 * angular_size), 2)) {
   if (scene.environment) {
     environment_power_ = pi * scene.environment->mean_radiance().mean();
-    if (environment_power_ > 0) entries_.push_back({Kind::environment});
+    if (environment_power_ > 0) {
+      entries_.push_back({Kind::environment});
+      environment_concentrated_ = contrast(*scene.environment) > concentrated_contrast;
+    }
   }
   std::vector<double> powers;
   BoundingBox bounds;
@@ -110,6 +144,9 @@ LightSampler::LightSampler(const Scene& scene) : scene_(scene) {
       triangles_.push_back(*emitter);
       powers.push_back(power);
       for (const uint32_t corner : mesh.corners[emitter->triangle]) bounds.extend(mesh.positions[corner]);
+    } else if (angular_size > 0) {
+      cones_.push_back(i);
+      entries_.push_back({Kind::cone, i});
     } else {
       entries_.push_back({Kind::delta, i});
     }
@@ -128,6 +165,8 @@ double LightSampler::weight(const Entry& entry, const Vec3& point, const Vec3& n
       return environment_power_;
     case Kind::delta:
       return delta_weight(scene_.lights[entry.light], point, normal);
+    case Kind::cone:
+      return cone_weight(scene_.lights[entry.light], point, normal, cone_cosine_);
     case Kind::disk:
       return disk_weight(std::get<DiskLight>(scene_.lights[entry.light]), point, normal);
     case Kind::triangles: {
@@ -193,12 +232,105 @@ std::optional<LightSample> LightSampler::sample_entry(const Entry& entry, const 
       return scene_.environment->sample(u);
     case Kind::delta:
       return delta_sample(scene_.lights[entry.light], point);
+    case Kind::cone:
+      return sample_cone(scene_.lights[entry.light], point, u);
     case Kind::disk:
       return sample_disk(std::get<DiskLight>(scene_.lights[entry.light]), point, u);
     case Kind::triangles:
       return sample_triangle(point, u);
   }
   return std::nullopt;
+}
+
+std::optional<LightSample> LightSampler::sample_cone(const Light& light, const Vec3& point, Vec2 u) const {
+  auto sample = delta_sample(light, point);
+  if (!sample) return std::nullopt;
+  const double cosine = 1 - u.x * (1 - cone_cosine_), phi = 2 * pi * u.y;
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  sample->direction = Frame(sample->direction).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+  sample->radiance /= cone_projected_solid_angle_;
+  sample->pdf = 1 / (2 * pi * (1 - cone_cosine_));
+  sample->delta = false;
+  return sample;
+}
+
+std::optional<DiskHit> LightSampler::cone(std::size_t i, const Ray& ray) const {
+  const auto centre = delta_sample(scene_.lights[cones_[i]], ray.origin);
+  if (!centre || centre->distance > ray.t_max || glm::dot(centre->direction, ray.direction) < cone_cosine_)
+    return std::nullopt;
+  return DiskHit{centre->distance, centre->radiance / cone_projected_solid_angle_, cones_[i]};
+}
+
+double LightSampler::pdf_cone(const Vec3& point, const Vec3& normal, const DiskHit& hit) const {
+  return choice_probability(Kind::cone, hit.light, point, normal) / (2 * pi * (1 - cone_cosine_));
+}
+
+bool LightSampler::has_sizeless() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return entry.kind == Kind::delta; });
+}
+
+bool LightSampler::is_concentrated(const Entry& entry) const {
+  return entry.kind == Kind::cone || entry.kind == Kind::disk ||
+         (entry.kind == Kind::environment && environment_concentrated_);
+}
+
+bool LightSampler::has_concentrated() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [this](const Entry& entry) { return is_concentrated(entry); });
+}
+
+std::optional<LightSample> LightSampler::sample_concentrated(const Vec3& point, const Vec3& normal,
+                                                             double u_choice, Vec2 u) const {
+  double total = 0;
+  for (const Entry& entry : entries_)
+    if (is_concentrated(entry)) total += weight(entry, point, normal);
+  double target = u_choice * total;
+  const Entry* chosen = nullptr;
+  for (const Entry& entry : entries_) {
+    const double w = is_concentrated(entry) ? weight(entry, point, normal) : 0;
+    if (w <= 0) continue;
+    chosen = &entry;
+    if (target < w) break;
+    target -= w;
+  }
+  if (chosen == nullptr) return std::nullopt;
+  auto result = sample_entry(*chosen, point, u);
+  if (result) result->pdf = pdf_concentrated(point, normal, result->direction);
+  return result && result->pdf > 0 ? result : std::nullopt;
+}
+
+double LightSampler::pdf_concentrated(const Vec3& point, const Vec3& normal, const Vec3& direction) const {
+  Ray ray;
+  ray.origin = point;
+  ray.direction = direction;
+  double total = 0, sum = 0;
+  std::size_t cone_number = 0;
+  for (const Entry& entry : entries_) {
+    if (!is_concentrated(entry)) continue;
+    const double w = weight(entry, point, normal);
+    total += w;
+    if (entry.kind == Kind::environment) {
+      sum += w * scene_.environment->pdf(direction);
+    } else if (entry.kind == Kind::cone) {
+      if (cone(cone_number++, ray)) sum += w / (2 * pi * (1 - cone_cosine_));
+    } else if (const auto hit = disk_along(entry.light, ray)) {
+      sum += w * density_on_disk(std::get<DiskLight>(scene_.lights[entry.light]), direction, hit->t);
+    }
+  }
+  return total > 0 ? sum / total : 0;
+}
+
+Rgb LightSampler::radiance_along(const Vec3& point, const Vec3& direction) const {
+  Ray ray;
+  ray.origin = point;
+  ray.direction = direction;
+  Rgb sum = scene_.environment ? scene_.environment->radiance(direction) : Rgb();
+  for (const std::size_t i : disks_)
+    if (const auto hit = disk_along(i, ray)) sum += hit->radiance;
+  for (std::size_t i = 0; i < cones_.size(); ++i)
+    if (const auto hit = cone(i, ray)) sum += hit->radiance;
+  return sum;
 }
 
 std::optional<LightSample> LightSampler::sample_disk(const DiskLight& disk, const Vec3& point, Vec2 u) const {
@@ -259,23 +391,26 @@ double LightSampler::pdf_triangle(const Vec3& point, const Vec3& normal, const V
 
 double LightSampler::pdf_disk(const Vec3& point, const Vec3& normal, const Vec3& direction,
                               const DiskHit& hit) const {
-  const auto& disk = std::get<DiskLight>(scene_.lights[hit.light]);
-  const double cosine = -glm::dot(direction, disk.direction);
-  if (cosine <= 0) return 0;
-  return choice_probability(Kind::disk, hit.light, point, normal) * hit.t * hit.t /
-         (cosine * pi * disk.radius * disk.radius);
+  return choice_probability(Kind::disk, hit.light, point, normal) *
+         density_on_disk(std::get<DiskLight>(scene_.lights[hit.light]), direction, hit.t);
+}
+
+std::optional<DiskHit> LightSampler::disk_along(std::size_t i, const Ray& ray) const {
+  const auto& disk = std::get<DiskLight>(scene_.lights[i]);
+  const double approach = -glm::dot(ray.direction, disk.direction);
+  if (approach <= 0) return std::nullopt;
+  const double t = glm::dot(ray.origin - disk.position, disk.direction) / approach;
+  if (t <= ray.t_min || t >= ray.t_max) return std::nullopt;
+  if (length_squared(ray.origin + t * ray.direction - disk.position) > disk.radius * disk.radius)
+    return std::nullopt;
+  return DiskHit{t, disk.radiance, i};
 }
 
 std::optional<DiskHit> LightSampler::nearest_disk(const Ray& ray) const {
   std::optional<DiskHit> nearest;
   for (const std::size_t i : disks_) {
-    const auto& disk = std::get<DiskLight>(scene_.lights[i]);
-    const double approach = -glm::dot(ray.direction, disk.direction);
-    if (approach <= 0) continue;
-    const double t = glm::dot(ray.origin - disk.position, disk.direction) / approach;
-    if (t <= ray.t_min || t >= (nearest ? nearest->t : ray.t_max)) continue;
-    if (length_squared(ray.origin + t * ray.direction - disk.position) > disk.radius * disk.radius) continue;
-    nearest = DiskHit{t, disk.radiance, i};
+    const auto hit = disk_along(i, ray);
+    if (hit && (!nearest || hit->t < nearest->t)) nearest = hit;
   }
   return nearest;
 }

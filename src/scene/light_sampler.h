@@ -23,7 +23,10 @@ struct DiskHit {
 /// are added through uniform_radiance(). Thread-safe; keeps a reference to the scene.
 class LightSampler {
  public:
-  explicit LightSampler(const Scene& scene);
+  /// Point, spot and directional lights fill a cone of that full angle (radians) around their direction, with
+  /// a radiance that leaves the irradiance of a surface above whose horizon they stand as it was; 0: they
+  /// have no size, and no ray finds them.
+  explicit LightSampler(const Scene& scene, double angular_size = 0);
 
   /// One direction. `pdf` holds the choice of the light as well. Nothing where no light can reach.
   std::optional<LightSample> sample(const Vec3& point, const Vec3& normal, double u_choice, Vec2 u) const;
@@ -33,6 +36,13 @@ class LightSampler {
   double pdf_environment(const Vec3& point, const Vec3& normal, const Vec3& direction) const;
   double pdf_triangle(const Vec3& point, const Vec3& normal, const Vec3& direction, const Hit& hit) const;
   double pdf_disk(const Vec3& point, const Vec3& normal, const Vec3& direction, const DiskHit& hit) const;
+
+  double pdf_cone(const Vec3& point, const Vec3& normal, const DiskHit& hit) const;
+
+  /// Lights of an angular size: whether the cone numbered `i`, as seen from the ray's origin, holds its
+  /// direction (unit), and the light is closer than the ray's end.
+  std::size_t cone_count() const { return cones_.size(); }
+  std::optional<DiskHit> cone(std::size_t i, const Ray& ray) const;
 
   /// The nearest disk light along a ray, seen from its emitting side.
   std::optional<DiskHit> nearest_disk(const Ray& ray) const;
@@ -46,8 +56,24 @@ class LightSampler {
 
   bool has_lights() const { return !entries_.empty(); }
 
+  /// Whether there are lights that no ray can find.
+  bool has_sizeless() const;
+
+  // Directions of concentrated light alone, whatever else lies along them: disks, cones, and an environment
+  // with most of its light in a small part of the sphere. Emissive triangles are left out, since only tracing
+  // tells in which direction they are.
+  bool has_concentrated() const;
+  std::optional<LightSample> sample_concentrated(const Vec3& point, const Vec3& normal, double u_choice,
+                                                 Vec2 u) const;
+  /// The density with which sample_concentrated() draws `direction`, all lights together.
+  double pdf_concentrated(const Vec3& point, const Vec3& normal, const Vec3& direction) const;
+  /// Radiance of environment, disks and cones from `direction`, unoccluded.
+  Rgb radiance_along(const Vec3& point, const Vec3& direction) const;
+  /// About the mean over all directions of what arrives at a point, all lights together.
+  double typical_radiance(const Vec3& point) const { return total_weight(point, Vec3(0)) / pi; }
+
  private:
-  enum class Kind : uint8_t { environment, delta, disk, triangles };
+  enum class Kind : uint8_t { environment, delta, cone, disk, triangles };
   struct Entry {
     Kind kind;
     std::size_t light = 0;  // index into Scene::lights; unused for environment and triangles
@@ -56,14 +82,20 @@ class LightSampler {
   double total_weight(const Vec3& point, const Vec3& normal) const;
   /// Probability that the entry of that kind (and light) is chosen at the point.
   double choice_probability(Kind kind, std::size_t light, const Vec3& point, const Vec3& normal) const;
+  bool is_concentrated(const Entry& entry) const;
+  std::optional<DiskHit> disk_along(std::size_t i, const Ray& ray) const;
   std::optional<LightSample> sample_entry(const Entry& entry, const Vec3& point, Vec2 u) const;
   std::optional<LightSample> sample_triangle(const Vec3& point, Vec2 u) const;
+  std::optional<LightSample> sample_cone(const Light& light, const Vec3& point, Vec2 u) const;
   std::optional<LightSample> sample_disk(const DiskLight& disk, const Vec3& point, Vec2 u) const;
 
   const Scene& scene_;
   std::vector<Entry> entries_;
-  std::vector<std::size_t> patches_, disks_;
-  double environment_power_ = 0;  // pi x mean radiance
+  std::vector<std::size_t> patches_, disks_, cones_;
+  double cone_cosine_ = 1;                 // of half the angular size
+  double cone_projected_solid_angle_ = 0;  // of a cone about the normal
+  double environment_power_ = 0;           // pi x mean radiance
+  bool environment_concentrated_ = false;
   std::vector<TriangleLight> triangles_;
   DiscreteDistribution triangle_choice_;
   std::vector<std::vector<uint32_t>> triangle_slot_;  // per object, per triangle: index or no_index

@@ -54,6 +54,28 @@ TEST_CASE("a directional light gives its irradiance") {
         Approx(expected_diffuse(0.6, std::sqrt(0.5), 2)).epsilon(1e-6));
 }
 
+TEST_CASE(
+    "a light of one degree gives what it gives without size, with bodies and media (z-test at 1e-4, Sidak "
+    "over 6)") {
+  const Light lights[] = {PointLight{Vec3(1, 0, 2), Rgb(3)},
+                          SpotLight{Vec3(1, 0, 2), glm::normalize(Vec3(-1, 0, -2)), Rgb(3), 0.3, 0.5},
+                          DirectionalLight{glm::normalize(Vec3(1, 0, -1)), Rgb(2)}};
+  for (const Light& light : lights)
+    for (const bool medium : {false, true}) {
+      Scene scene;
+      add(scene, make_plane(10), medium ? medium_material(Rgb(0.9), Rgb(0.001)) : diffuse_material(Rgb(0.6)));
+      scene.lights.push_back(light);
+      prepare_scene(scene);
+      SurfaceOptions sized = looking_down();
+      sized.angular_size = pi / 180;
+      const Measured a = measure(scene, looking_down(), 20000), b = measure(scene, sized, 20000, 0, 2);
+      INFO(a.mean << " +- " << a.error << " against " << b.mean << " +- " << b.error);
+      // Transmission and cosine are not linear over the cone; that is of the order of its square.
+      const double excess = std::max(0.0, std::abs(a.mean - b.mean) - 1e-4 * a.mean);
+      CHECK(two_sided_normal_p_value(excess / std::hypot(a.error, b.error)) > sidak(1e-4, 6));
+    }
+}
+
 TEST_CASE("a tiny disk light equals a point light") {
   // A disk of radius r and radiance L facing the point has the intensity pi r^2 L.
   Scene disk, point;

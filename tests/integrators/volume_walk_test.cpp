@@ -196,8 +196,8 @@ TEST_CASE(
 TEST_CASE("cells bound the distance to the surface and do not depend on who asked first") {
   const Body body(make_blob(0.06, 0.2, 48));
   const StripedAlbedo field(body.mesh, 0.02);
-  const AlbedoCells forwards(body.rays, body.mesh, 0, field, 0.01);
-  const AlbedoCells backwards(body.rays, body.mesh, 0, field, 0.01);
+  const AlbedoCells forwards(body.rays, body.mesh, 0, &field, 0.01);
+  const AlbedoCells backwards(body.rays, body.mesh, 0, &field, 0.01);
   Rng rng(13);
   std::vector<Vec3> points;
   for (int i = 0; i < 2000; ++i) {

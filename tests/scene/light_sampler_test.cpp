@@ -46,6 +46,8 @@ double p_value(const Scene& scene, const LightSampler& sampler, const Vec3& poin
         double pdf = sampler.pdf_environment(point, Vec3(0), w);
         if (const auto hit = scene.rays.nearest(ray)) pdf += sampler.pdf_triangle(point, Vec3(0), w, *hit);
         if (const auto disk = sampler.nearest_disk(ray)) pdf += sampler.pdf_disk(point, Vec3(0), w, *disk);
+        for (std::size_t i = 0; i < sampler.cone_count(); ++i)
+          if (const auto cone = sampler.cone(i, ray)) pdf += sampler.pdf_cone(point, Vec3(0), *cone);
         return pdf;
       });
 }
@@ -132,6 +134,49 @@ TEST_CASE("several lights together are drawn by their densities") {
   test.quadrature = 30;
   test.rows = 24;
   CHECK(p_value(scene, sampler, Vec3(0), test) > significance);
+}
+
+TEST_CASE("lights of an angular size are drawn by their densities") {
+  Scene scene;
+  scene.rays.commit();
+  scene.environment = make_sky_environment({});
+  scene.lights.push_back(DirectionalLight{glm::normalize(Vec3(1, 0.3, -1)), Rgb(1)});
+  scene.lights.push_back(PointLight{{0, 2, 0}, Rgb(5)});
+  scene.lights.push_back(DiskLight{{3, 0, 1}, {-1, 0, 0}, 1.5, Rgb(2)});
+  const LightSampler sampler(scene, 0.7);
+  CHECK_FALSE(sampler.has_sizeless());
+  SphereChiSquare test;
+  test.quadrature = 30;
+  test.rows = 24;
+  CHECK(p_value(scene, sampler, Vec3(0), test) > significance);
+  // Concentrated light alone: not the sky.
+  Rng choice(98);
+  SphereChiSquare directions = test;
+  CHECK(directions.test(
+            [&](Vec2 u) -> std::optional<Vec3> {
+              const auto sample = sampler.sample_concentrated(Vec3(0), Vec3(0), choice.uniform(), u);
+              if (!sample) return std::nullopt;
+              return sample->direction;
+            },
+            [&](const Vec3& w) { return sampler.pdf_concentrated(Vec3(0), Vec3(0), w); }) > significance);
+}
+
+TEST_CASE("an angular size leaves the irradiance as it was") {
+  Scene scene;
+  scene.rays.commit();
+  const Vec3 up(0, 0, 1);
+  SECTION("point") {
+    scene.lights.push_back(PointLight{{3, 0, 4}, Rgb(50)});
+    check_mean(irradiance(LightSampler(scene, 0.5), Vec3(0), up, 20000), 50 * 0.8 / 25);
+  }
+  SECTION("spot") {
+    scene.lights.push_back(SpotLight{{0, 0, 2}, {0, 0, -1}, Rgb(8), 0.3, 0.6});
+    check_mean(irradiance(LightSampler(scene, 0.5), Vec3(0), up, 20000), 2);
+  }
+  SECTION("directional") {
+    scene.lights.push_back(DirectionalLight{glm::normalize(Vec3(1, 0, -1)), Rgb(3)});
+    check_mean(irradiance(LightSampler(scene, 0.02), Vec3(0), up, 20000), 3 / std::sqrt(2.0));
+  }
 }
 
 TEST_CASE("closed forms of irradiance") {
