@@ -59,7 +59,7 @@ SamplerKind sampler_kind_from_name(std::string_view name) {
 
 SampleGroup sample_group(uint32_t k) {
   // Class c holds the 64 * 2^c samples that follow 64 * (2^c - 1).
-  const auto size_class = static_cast<uint32_t>(std::bit_width(k / 64 + 1)) - 1;
+  const auto size_class = static_cast<uint32_t>(std::bit_width((k / 64 + 1) / 2));
   const uint32_t offset = k - 64u * ((1u << size_class) - 1u);
   const uint32_t size = 4u << size_class;
   return {size_class, offset / size, offset % size};

@@ -54,7 +54,7 @@ struct Bell {
   }
   template <int taps>
   static Bell of(float variance) {
-    constexpr float reach = taps / 2;
+    constexpr auto reach = static_cast<float>(taps / 2);
     const float t = variance * (8 / (reach * reach));
     // Subtracting the pedestal narrows the bell; this widens it again (a fit, within 0.1 % for t <= 1.05).
     const float nominal = variance * (1 + t * t * t * (-0.0867341f + t * (0.1663139f + t * 0.1145253f)));
@@ -72,7 +72,7 @@ Float8 both(float low, float high) {
 template <int taps>
 void bell_weights(const float (&fraction)[2], const float (&variance)[2], Weights (&weights)[2],
                   float (&sums)[2]) {
-  constexpr float reach = taps / 2;
+  constexpr auto reach = static_cast<float>(taps / 2);
   const Bell u = Bell::of<taps>(variance[0]),
              v = variance[1] == variance[0] ? u : Bell::of<taps>(variance[1]);
   const Float8 scale = both(u.scale, v.scale), pedestal = both(u.pedestal, v.pedestal);
@@ -127,7 +127,7 @@ Float4 gather_taps(const Vec4f* corner, std::size_t stride, const Weights& u_wei
     Float8 row{};
     for (int i = 0; i < taps / 2; ++i) {
       Float8 pair;
-      std::memcpy(&pair, corner + 2 * i, sizeof pair);
+      std::memcpy(&pair, corner + std::ptrdiff_t{2} * i, sizeof pair);
       row += pair * pair_weights[i];
     }
     sum += row * v_weights[j];
@@ -229,7 +229,7 @@ GaussianPyramid::GaussianPyramid(const TexelArray& texels, std::vector<float> co
   assert(coverage.empty() || coverage.size() == texels.texels.size());
   if (std::none_of(coverage.begin(), coverage.end(), [](float c) { return c > 0; })) coverage.clear();
   Level finest = allocate(texels.width, texels.height);
-  for (std::size_t axis = 0; axis < 2; ++axis) finest.samples_per_texel[axis] = 1;
+  for (double& samples : finest.samples_per_texel) samples = 1;
   Vec4 sum(0);
   max_ = Rgb(-std::numeric_limits<double>::infinity());
   for (int y = 0, i = 0; y < texels.height; ++y)
