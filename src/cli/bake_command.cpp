@@ -13,6 +13,7 @@
 #include "optics/profile_store.h"
 #include "optics/shape_bake.h"
 #include "study/optics_report.h"
+#include "study/shape_report.h"
 
 namespace alabaster {
 
@@ -38,8 +39,7 @@ void report(const BakeArguments& arguments, uint64_t photons, uint64_t collision
 }
 
 void run_shapes(const BakeArguments& arguments) {
-  if (!arguments.report.empty() || arguments.view != "all")
-    throw InputError("--shapes takes neither --report nor --view");
+  if (arguments.view != "all") throw InputError("--shapes tabulates all outgoing light; leave out --view");
   ShapeBakeOptions options;
   options.medium = {arguments.g, arguments.eta};
   options.seed = arguments.seed;
@@ -57,6 +57,7 @@ void run_shapes(const BakeArguments& arguments) {
     table = bake_shapes(options, *half_space, [&](double done) { progress.update(done); });
   }
   write_shape_table(arguments.output, table);
+  if (!arguments.report.empty()) write_shape_report(table, *half_space, arguments.report);
   report(arguments, table.photons, table.collisions, start, cpu_start);
 }
 
@@ -112,7 +113,8 @@ void add_bake_command(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "table file to write")->required();
   command->add_option(
       "--report", arguments->report,
-      "folder for figures of the table's and other fits' accuracy, against a second simulation");
+      "folder for figures: the table's and other fits' accuracy against a second simulation; with "
+      "--shapes the factors");
   command->callback([arguments] { run(*arguments); });
 }
 

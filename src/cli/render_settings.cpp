@@ -152,7 +152,7 @@ const std::vector<Option>& options() {
   static const std::vector<Option> all{
       {{"integrator", "NAME", "surface (the default), volume (the reference) or walk", true}, set_integrator},
       {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
-      {{"basis", "NAME", "half-space (the default) or shape", true}, set_basis},
+      {{"basis", "NAME", "shape (the default) or half-space", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},
       {{"guide", "NAME", "of volume and walk: look for light (the default) or none", true}, set_guide},
