@@ -260,6 +260,36 @@ TEST_CASE("what claims symmetry is symmetric, the graph keeps the triangle inequ
   }
 }
 
+TEST_CASE("the Steiner graph is never short and closes in as points are added", "[geodesic]") {
+  const TriangleMesh plane = make_plane(2, 6), ball = make_blob(1, 0, 24);
+  Rng rng(8);
+  const auto on_the_ball = static_cast<uint32_t>(ball.triangle_count());
+  double last_plane = 1, last_ball = 1;
+  for (const int per_edge : {0, 2, 6}) {
+    const auto on_plane = make_steiner_graph(plane, per_edge), on_ball = make_steiner_graph(ball, per_edge);
+    double mean_plane = 0, mean_ball = 0;
+    const SurfacePoint from = plane.surface_point(9, {0.3, 0.3}),
+                       from_ball = ball.surface_point(9, {0.3, 0.3});
+    int count = 0;
+    for (uint32_t t = 0; t < plane.triangle_count(); t += 3) {
+      const SurfacePoint to = plane.surface_point(t, {0.2, 0.2}),
+                         to_ball = ball.surface_point((7 * t) % on_the_ball, {0.2, 0.2});
+      const double exact = glm::distance(from.position, to.position),
+                   exact_ball = on_unit_sphere(from_ball.position, to_ball.position);
+      if (exact < 0.3 || exact_ball < 0.3) continue;
+      ++count;
+      CHECK(*on_plane->distance(from, to) >= exact * (1 - 1e-12));
+      mean_plane += *on_plane->distance(from, to) / exact - 1;
+      mean_ball += std::abs(*on_ball->distance(from_ball, to_ball) / exact_ball - 1);
+    }
+    CHECK(mean_plane / count < 0.4 * last_plane);
+    CHECK(mean_ball / count < 0.6 * last_ball);
+    last_plane = mean_plane / count, last_ball = mean_ball / count;
+  }
+  CHECK(last_plane < 0.01);
+  CHECK(last_ball < 0.015);
+}
+
 TEST_CASE("unreachable points are answered as such", "[geodesic]") {
   TriangleMesh pair = make_sphere(1, 16);
   const TriangleMesh other = make_sphere(1, 16);
