@@ -222,6 +222,11 @@ KernelFootprint StraightestPlacement::around(const SurfacePoint& point, double s
   return footprint_at(body_, point, sigma);
 }
 
+const std::vector<std::string>& placement_names() {
+  static const std::vector<std::string> names{"chord", "arc", "projected-chord", "straightest"};
+  return names;
+}
+
 std::unique_ptr<KernelPlacement> make_placement(std::string_view name, const PlacementBody& body) {
   if (name == "chord") return std::make_unique<ChordPlacement>(body);
   if (name == "arc") return std::make_unique<ArcPlacement>(body);

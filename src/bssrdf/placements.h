@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "bssrdf/kernel_placement.h"
 #include "geometry/geodesic.h"
@@ -115,7 +117,9 @@ class StraightestPlacement final : public KernelPlacement {
   std::unique_ptr<GeodesicPath> path_;
 };
 
-/// chord, arc, projected-chord or straightest. Throws InputError, naming them, for any other name.
+/// chord, arc, projected-chord, straightest.
+const std::vector<std::string>& placement_names();
+/// Throws InputError, naming those that there are, for any other name.
 std::unique_ptr<KernelPlacement> make_placement(std::string_view name, const PlacementBody& body);
 
 inline constexpr std::string_view default_placement = "chord";

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/study_options.h"
 #include "core/parallel.h"
+#include "study/geodesic_chart.h"
 #include "study/speed_accuracy.h"
 
 namespace alabaster {
@@ -16,8 +17,18 @@ struct ChartSettings {
   std::string what = "speed", budgets = "quick";
 };
 
+void run_geodesic(const ChartSettings& settings) {
+  const double start = wall_seconds();
+  GeodesicChartOptions options;
+  options.output = settings.study.output;
+  options.seed = settings.study.seed;
+  chart_geodesics(options);
+  finish_study(settings.study.output + "/chart.html", wall_seconds() - start);
+}
+
 void run(ChartSettings& settings) {
   set_thread_count(settings.study.threads);
+  if (settings.what == "geodesic") return run_geodesic(settings);
   ChartOptions& options = settings.options;
   options.quality = quality_from_name(settings.budgets);
   options.output = settings.study.output;
@@ -35,8 +46,10 @@ void add_chart_command(CLI::App& app) {
   auto settings = std::make_shared<ChartSettings>();
   CLI::App* command =
       app.add_subcommand("chart", "Chart every method's error against the reference over its time");
-  command->add_option("--what", settings->what, "speed: error over CPU time")
-      ->check(CLI::IsMember({"speed"}))
+  command
+      ->add_option("--what", settings->what,
+                   "speed: every method's error over CPU time; geodesic: distances over surfaces")
+      ->check(CLI::IsMember({"speed", "geodesic"}))
       ->capture_default_str();
   command
       ->add_option("--scenes", settings->options.scenes,

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <functional>
 
+#include "bssrdf/placements.h"
 #include "core/error.h"
 
 namespace alabaster {
@@ -99,7 +101,8 @@ void set_closest_point(RenderSettings& s, const Value& v) {
 }
 
 void set_placement(RenderSettings& s, const Value& v) {
-  if (v.text != "chord" && v.text != "arc" && v.text != "projected-chord" && v.text != "straightest")
+  const auto& names = placement_names();
+  if (std::find(names.begin(), names.end(), v.text) == names.end())
     v.refuse("is not known; use chord, arc, projected-chord or straightest");
   s.placement = v.text;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bssrdf/placements.h"
 #include "core/error.h"
 #include "integrators/render.h"
 
@@ -36,11 +37,14 @@ std::vector<std::string> split(const std::string& name) {
   return parts;
 }
 
-MeshMethod bssrdf_method(const std::string& model, const std::string& basis, const std::string& variant) {
+MeshMethod bssrdf_method(const std::string& model, const std::string& basis, const std::string& variant,
+                         const std::string& placement = "") {
   MeshMethod method;
+  if (!placement.empty()) method.placement = placement;
   method.basis = basis;
   method.model = variant.empty() ? model : model + ":" + variant;
-  method.name = model + "+" + basis + (variant.empty() ? "" : "+" + variant);
+  method.name = model + "+" + basis + (variant.empty() ? "" : "+" + variant) +
+                (placement.empty() ? "" : "+" + placement);
   return method;
 }
 
@@ -60,6 +64,7 @@ SurfaceOptions MeshMethod::apply(SurfaceOptions options) const {
   if (transport == Transport::bssrdf) {
     options.model = model;
     options.basis = basis_value();
+    options.placement = placement;
   }
   return options;
 }
@@ -79,12 +84,17 @@ MeshMethod parse_mesh_method(const std::string& name) {
       throw InputError("method '" + name + "': there is no basis '" + basis + "'; use " +
                        joined(mesh_bases()));
   }
-  const std::string variant = next < parts.size() ? parts[next++] : "";
-  const bool known =
-      variant.empty() || (parts[0] == "composite" && contains({"symmetric", "order1"}, variant));
-  if (!known || next < parts.size())
-    throw InputError("method '" + name + "': there is no such variant; composite takes symmetric and order1");
-  return bssrdf_method(parts[0], basis, variant);
+  const bool composite = parts[0] == "composite", placed = composite || parts[0] == "aggregate";
+  std::string variant, placement;
+  if (next < parts.size() && composite && contains({"symmetric", "order1"}, parts[next]))
+    variant = parts[next++];
+  if (next < parts.size() && placed && contains(placement_names(), parts[next])) placement = parts[next++];
+  if (next < parts.size())
+    throw InputError("method '" + name +
+                     "': there is no such variant; composite takes symmetric and order1, " +
+                     "composite and aggregate a placement: " + joined(placement_names()));
+  if (placement == default_placement) placement.clear();
+  return bssrdf_method(parts[0], basis, variant, placement);
 }
 
 std::vector<MeshMethod> standard_mesh_methods() {

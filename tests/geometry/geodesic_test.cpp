@@ -282,7 +282,7 @@ TEST_CASE("the Steiner graph is never short and closes in as points are added", 
       mean_plane += *on_plane->distance(from, to) / exact - 1;
       mean_ball += std::abs(*on_ball->distance(from_ball, to_ball) / exact_ball - 1);
     }
-    CHECK(mean_plane / count < 0.4 * last_plane);
+    CHECK(mean_plane / count < 0.6 * last_plane);
     CHECK(mean_ball / count < 0.6 * last_ball);
     last_plane = mean_plane / count, last_ball = mean_ball / count;
   }

@@ -34,6 +34,9 @@ TEST_CASE("names of mesh methods are read and written back") {
   const MeshMethod method = parse_mesh_method("composite+half-space+order1");
   CHECK(method.model == "composite:order1");
   CHECK(method.basis == "half-space");
+  CHECK(parse_mesh_method("composite+shape+symmetric+arc").placement == "arc");
+  CHECK(parse_mesh_method("aggregate+half-space+straightest").name == "aggregate+half-space+straightest");
+  CHECK(parse_mesh_method("composite+half-space+chord").name == "composite+half-space");
   CHECK(parse_mesh_method("walk").transport == Transport::walk);
   CHECK(parse_mesh_method("volume").transport == Transport::volume);
   for (const char* wrong : {"", "walk+half-space", "composite+", "composite+sphere",
