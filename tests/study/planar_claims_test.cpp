@@ -87,8 +87,8 @@ TEST_CASE("in radiosity the best aggregate passes the composite model", "[slow]"
 TEST_CASE("obliquely, too, the best aggregate passes the composite model", "[slow]") {
   for (const char* name : {"stripes1@45", "stripes1@75"}) {
     auto errors = errors_on(name);
-    INFO(name << ": composite " << errors["composite"].bias << ", factorized " << errors["factorized"].bias
-              << ", best aggregate " << errors["aggregate"].bias);
+    INFO(name << ": composite " << *errors["composite"].bias << ", factorized " << *errors["factorized"].bias
+              << ", best aggregate " << *errors["aggregate"].bias);
     CHECK(clearly_below(errors["aggregate"], errors["composite"]));
     CHECK(clearly_below(errors["composite"], errors["factorized"]));
     CHECK(clearly_below(errors["factorized"], errors["homogeneous"]));
