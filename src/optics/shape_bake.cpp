@@ -61,8 +61,10 @@ Bins gather(ShapeFamily family, double size, double albedo, const std::vector<Es
     const double expected = half_space_energy(family, size, albedo, from, to, half_space);
     const bool measured = e.value > 1e-250 && e.standard_error > 0 && expected > 1e-300;
     const double photons = measured ? std::pow(e.value / e.standard_error, 2) : 0;
-    // Few photons make a biased logarithm, so they fade out.
-    const double fade = photons * photons / (photons * photons + 100);
+    // Few photons make a biased logarithm, and far beyond the diffusion length a badly biased one: what is
+    // seen there are paths of typical length, what counts are short ones that are not seen.
+    const double certainty = std::clamp((photons - 16) / 48, 0.0, 1.0);
+    const double fade = certainty * certainty * (3 - 2 * certainty);
     const double trust = 1 / (1 + std::pow(from / trusted_radius(albedo, half_space.g()), 8));
     bins.position.push_back(node_position(family, size, std::sqrt(from * to)));
     bins.log_ratio.push_back(measured ? std::log(e.value / expected) : 0);
@@ -98,7 +100,7 @@ Eigen::VectorXd smooth(ShapeFamily family, double size, const Bins& bins, const 
     right[i] += w * (1 - t) * change;
     right[i + 1] += w * t * change;
   }
-  const double bend = 400, slope = 1, level = 1e-4;  // 1 / typical squares
+  const double bend = 400, slope = 1, level = 0.02;  // 1 / typical squares
   for (Eigen::Index i = 0; i < n; ++i) {
     matrix(i, i) += level;
     if (family != ShapeFamily::slab_far) {

@@ -15,7 +15,7 @@ struct ShapeBakeOptions {
 };
 
 /// Photons per body of the named qualities of `alabaster bake`.
-inline constexpr uint64_t quick_shape_photons = 125'000, full_shape_photons = 2'000'000;
+inline constexpr uint64_t quick_shape_photons = 125'000, full_shape_photons = 1'000'000;
 
 /// Simulates balls, cavities and slabs and tabulates their profiles over those of `half_space`, which must be
 /// of the same medium. `progress` gets the fraction done, from this thread.

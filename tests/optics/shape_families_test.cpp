@@ -137,6 +137,15 @@ TEST_CASE("flat is exactly 1, and reached continuously") {
   }
 }
 
+TEST_CASE("where nothing can be measured the factors stay moderate") {
+  // Far beyond the diffusion length, at low albedo, only the neighbours in albedo tell.
+  for (const std::vector<int16_t>& family : baseline_shape_table().log2_factor) {
+    const auto [least, most] = std::minmax_element(family.begin(), family.end());
+    CHECK(*least * ShapeTable::step > -20);
+    CHECK(*most * ShapeTable::step < 14);
+  }
+}
+
 TEST_CASE("three channels at once are the channels one by one") {
   const ShapeFamilies& shapes = baseline_shapes();
   const Rgb albedo(0.3, 0.9, 0.999), sigma_t(500, 1000, 2500);
