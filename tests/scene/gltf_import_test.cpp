@@ -171,7 +171,7 @@ TEST_CASE("tangents are made where a normal map needs them and dropped where non
   const GltfScene with = import_gltf(file.write(folder));
   REQUIRE(with.objects[0].mesh.tangents.size() == with.objects[0].mesh.normals.size());
   CHECK(with.objects[0].mesh.tangents[0].x == Approx(1));
-  file.root["materials"] = {json::object()};
+  file.root["materials"] = json::array({json::object()});
   CHECK(import_gltf(file.write(folder)).objects[0].mesh.tangents.empty());
 }
 
