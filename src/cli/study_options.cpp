@@ -18,7 +18,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
   command.add_option("-o,--output", options.output, "Folder for the report")->required();
   command
       .add_option("--resolution", options.resolution,
-                  "Meshes: pixels of the longer side (quick 72, full 256)")
+                  "Meshes: pixels of the longer side (quick 96, full 256)")
       ->check(CLI::Range(1, 8192));
   command
       .add_option("--reference-noise", options.noise,

@@ -93,7 +93,7 @@ MeshSceneResult measure_mesh(const std::string& name, const std::vector<MeshMeth
   std::map<std::string, TimedImage> flat;
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const std::string key = flat_key(methods[i]);
-    if (flat.count(key) == 0) flat[key] = render_mesh(scene, methods[i], 4 * budget.spp, seed + 2);
+    if (flat.count(key) == 0) flat[key] = render_mesh(scene, methods[i], 2 * budget.spp, seed + 2);
     result.methods[i].flat_render = flat[key];
   }
   if (!flat_reference || cancellation_requested()) {

@@ -12,10 +12,10 @@ namespace alabaster {
 
 /// What meshes are measured with.
 struct MeshBudget {
-  int resolution = 72;            // pixels of the longer side
+  int resolution = 96;            // pixels of the longer side
   double reference_noise = 0.05;  // of the references, RMSE / RMS
   uint32_t max_spp = 2048;        // of the references
-  uint32_t spp = 256;             // of the methods; four times as many without texture
+  uint32_t spp = 256;             // of the methods; twice as many without texture
 };
 
 /// A method's error on a mesh, and where it comes from.

@@ -125,7 +125,7 @@ HtmlReport page(const ChartResult& result, const ChartOptions& options) {
                   result.cancelled ? " Stopped before the end: some scenes are missing." : ""));
   report.paragraph(
       "A curve falls while the noise does and ends at the method's own error, which no time removes. The "
-      "thick line is "
+      "grey band is "
       "the Pareto front: what is the best for its time. `volume` is the reference's own method with few "
       "samples, `walk` "
       "the same with the albedo of the point that is seen, as production renderers have it.");
