@@ -9,6 +9,7 @@
 #include "integrators/volume_checks.h"
 #include "integrators/volume_transport.h"
 #include "optics/fresnel.h"
+#include "optics/photon_walk.h"
 
 namespace alabaster {
 
@@ -41,6 +42,9 @@ struct SurfaceIntegrator::Body {
   Medium medium;
   Rgb sigma_t;
   double sigma_min = 0;
+  uint32_t object = 0;
+  /// Share of sigma_t by the closest surface point; null: 1. BSSRDFs know nothing of it.
+  const AlbedoField* density = nullptr;
   std::unique_ptr<SubsurfaceTransport> transport;
 };
 
@@ -109,6 +113,8 @@ void SurfaceIntegrator::prepare_bodies() {
       body->medium = *scene_.materials[m].medium;
       body->sigma_t = body->medium.sigma_t();
       body->sigma_min = body->sigma_t.min();
+      body->object = o;
+      if (options_.transport != Transport::bssrdf) body->density = object.density.get();
       std::vector<uint8_t> boundary(used.size(), 0);
       for (std::size_t other = m; other < used.size(); ++other)
         if (used[other] && scene_.materials[other].medium == body->medium) {
@@ -418,12 +424,17 @@ Rgb SurfaceIntegrator::unscattered(const Interaction& it, const Body& body, cons
   for (int bounce = 0; bounce < max_specular_chain; ++bounce) {
     from.geometric_normal = -from.geometric_normal;
     if (glm::dot(direction, from.geometric_normal) <= 0) return Rgb();
-    const Vec2 u = path.sampler.get_2d(Dimension::specular_path, path.vertices++ | 0x10000u);
+    const uint32_t vertex = path.vertices++ | 0x10000u;
+    const Vec2 u = path.sampler.get_2d(Dimension::specular_path, vertex);
     Ray ray = leaving(from, direction);
-    ray.t_max = -std::log1p(-u.x) / body.sigma_min;
+    if (body.density == nullptr) ray.t_max = -std::log1p(-u.x) / body.sigma_min;
     const auto hit = scene_.rays.nearest(ray, 0.5);
     if (!hit) return Rgb();
-    for (int c = 0; c < 3; ++c) throughput[c] *= std::exp(-(body.sigma_t[c] - body.sigma_min) * hit->t);
+    if (body.density != nullptr)
+      throughput *=
+          unscattered_share(body, ray, hit->t, path.sampler.stream(Dimension::specular_path, vertex));
+    for (int c = 0; c < 3 && body.density == nullptr; ++c)
+      throughput[c] *= std::exp(-(body.sigma_t[c] - body.sigma_min) * hit->t);
     const Interaction inside = make_interaction(scene_, ray, *hit);
     const Arrival next = arrival.specular(throughput.max());
     if (inside.front || this->body(inside) != &body)  // something within the medium
@@ -445,6 +456,22 @@ Rgb SurfaceIntegrator::unscattered(const Interaction& it, const Body& body, cons
            (incoming(leaving(outside, refracted), next, path) + lights_.uniform_radiance(outside.position));
   }
   return Rgb();
+}
+
+// Transmittance of a medium of varying density, estimated by ratio tracking: at each collision of the densest
+// medium, the chance that it was none.
+Rgb SurfaceIntegrator::unscattered_share(const Body& body, const Ray& ray, double distance, Rng rng) const {
+  const TriangleMesh& mesh = scene_.objects[body.object].mesh;
+  const double sigma_max = body.sigma_t.max();
+  Rgb share(1);
+  for (double t = sample_free_flight(rng) / sigma_max; t < distance;
+       t += sample_free_flight(rng) / sigma_max) {
+    const auto closest = scene_.rays.closest_point(body.object, ray.origin + t * ray.direction);
+    if (!closest) return Rgb();
+    const double density = body.density->at(mesh.surface_point(closest->triangle, closest->barycentric)).r;
+    share *= Rgb(1) - body.sigma_t * (density / sigma_max);
+  }
+  return share;
 }
 
 // ---- Rays ----

@@ -99,6 +99,8 @@ class SurfaceIntegrator final : public Integrator {
   Rgb entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
                           uint32_t vertex, const Path& path) const;
 
+  Rgb unscattered_share(const Body& body, const Ray& ray, double distance, Rng rng) const;
+
   Rgb fresnel(const Interaction& it, double cosine) const;
   double opacity_number(const Path& path, uint32_t vertex) const;
   Ray leaving(const SurfacePoint& point, const Vec3& direction) const;

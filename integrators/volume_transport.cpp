@@ -14,7 +14,7 @@ VolumeTransport::VolumeTransport(const Scene& scene, uint32_t object, const Medi
     : name_(scene.objects[object].name),
       eta_(medium.eta),
       walk_(scene.rays, scene.objects[object].mesh, object, boundary, medium, *scene.objects[object].albedo,
-            options, guide) {
+            options, guide, scene.objects[object].density.get()) {
   if (!options.open_sheets) check_closed(scene, scene.objects[object]);
   check_one_medium(scene, scene.objects[object], boundary);
 }

@@ -6,7 +6,7 @@ namespace alabaster {
 
 VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t object,
                        std::vector<uint8_t> boundary, const Medium& medium, const AlbedoField& albedo,
-                       const VolumeWalkOptions& options, const LightGuide* guide)
+                       const VolumeWalkOptions& options, const LightGuide* guide, const AlbedoField* density)
     : rays_(rays),
       mesh_(mesh),
       object_(object),
@@ -16,11 +16,13 @@ VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t 
       grey_(sigma_t_.is_grey()),
       albedo_(albedo),
       options_(options),
-      guide_(options.guided ? guide : nullptr) {
+      guide_(options.guided && density == nullptr ? guide : nullptr),
+      density_(density) {
   const BoundingBox box = bounding_box(mesh);
   slack_ = 0x1p-20 * std::max(glm::length(box.low), glm::length(box.high));
   // With the exit's albedo the cells tell where the surface is, for the guide.
   const bool reads_texture = options.albedo == WalkAlbedo::closest_point;
+  if (density != nullptr) return;  // every collision asks exactly
   if (options.closest_point == ClosestPointMode::cached && (reads_texture || guide_ != nullptr))
     cells_ = std::make_unique<AlbedoCells>(rays, mesh, object, reads_texture ? &albedo : nullptr,
                                            medium.mean_free_path.mean());
@@ -89,8 +91,17 @@ bool VolumeWalk::advance(State& state, Rng& rng) const {
 }
 
 bool VolumeWalk::collide(State& state, Rng& rng) const {
-  if (++state.order > options_.max_order) return ++state.lost, false;
-  const auto albedo = this->albedo(state, rng);
+  if (state.order >= options_.max_order) return ++state.lost, false;
+  std::optional<Rgb> albedo;
+  if (density_ != nullptr) {
+    const auto closest = closest_point(state, state.reach, no_index);
+    if (!closest) return ++state.lost, false;
+    if (rng.uniform() >= density_->at(*closest).r) return true;  // a null collision: on as it was
+    albedo = options_.albedo == WalkAlbedo::exit ? state.exit_albedo : albedo_.at(*closest);
+  } else {
+    albedo = this->albedo(state, rng);
+  }
+  ++state.order;
   if (!albedo) return ++state.lost, false;
   state.weight *= *albedo;
   const double survival = magnitude(state.weight).max() * 4;
@@ -126,6 +137,12 @@ std::optional<Rgb> VolumeWalk::albedo(State& state, Rng& rng) const {
 }
 
 std::optional<Rgb> VolumeWalk::exact_albedo(State& state, double reach, uint32_t guess) const {
+  const auto closest = closest_point(state, reach, guess);
+  if (!closest) return std::nullopt;
+  return albedo_.at(*closest);
+}
+
+std::optional<SurfacePoint> VolumeWalk::closest_point(State& state, double reach, uint32_t guess) const {
   const auto closest = rays_.closest_point(object_, state.position, reach + slack_, guess);
   ++state.queries;
   if (!closest) return std::nullopt;
@@ -135,11 +152,11 @@ std::optional<Rgb> VolumeWalk::exact_albedo(State& state, double reach, uint32_t
     state.normal = mesh_.geometric_normal(closest->triangle);
     state.depth = closest->distance;
   }
-  SurfacePoint point;  // an albedo needs no more of it
+  SurfacePoint point;  // textures need no more of it
   point.triangle = closest->triangle;
   point.barycentric = closest->barycentric;
   point.uv = mesh_.uv(closest->triangle, closest->barycentric);
-  return albedo_.at(point);
+  return point;
 }
 
 bool VolumeWalk::meet_boundary(State& state, const Hit& hit, Rng& rng) const {

@@ -61,10 +61,11 @@ class VolumeWalk {
  public:
   /// `boundary` has one flag per material index: whether the medium lies below its triangles; where it is 0
   /// light is absorbed. Everything passed by reference outlives the walk, the guide too; without one only the
-  /// walk's own exit counts.
+  /// walk's own exit counts. `density` (or null) is the share of sigma_t at the closest surface point, in r,
+  /// 0 to 1; a varying medium is walked through by null collisions and does without cells and guide.
   VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t object, std::vector<uint8_t> boundary,
              const Medium& medium, const AlbedoField& albedo, const VolumeWalkOptions& options,
-             const LightGuide* guide = nullptr);
+             const LightGuide* guide = nullptr, const AlbedoField* density = nullptr);
 
   /// Walks from `start` on the boundary in `direction` (unit, inside). Nothing where the path was absorbed or
   /// ended by Russian roulette. An exit of order 0 is light that never scattered.
@@ -90,6 +91,7 @@ class VolumeWalk {
 
   std::optional<Rgb> albedo(State& state, Rng& rng) const;
   std::optional<Rgb> exact_albedo(State& state, double reach, uint32_t guess) const;
+  std::optional<SurfacePoint> closest_point(State& state, double reach, uint32_t guess) const;
 
   // Light that is looked for: light_search.cpp.
   void look_for_light(State& state, Rng& rng) const;
@@ -109,6 +111,7 @@ class VolumeWalk {
   const AlbedoField& albedo_;
   VolumeWalkOptions options_;
   const LightGuide* guide_;
+  const AlbedoField* density_;
   std::unique_ptr<AlbedoCells> cells_;
   mutable Counts counts_;
 };

@@ -99,6 +99,7 @@ class AlbedoBuilder {
     for (SceneObject& object : scene_.objects) {
       object.albedo = build(object);
       if (object.albedo) add_pyramids(object);
+      object.density = build_density(object);
     }
     finish();
   }
@@ -123,6 +124,32 @@ class AlbedoBuilder {
     }
     if (count == 0) return nullptr;
     if (triangles.size() == 1) return std::move(fields[triangles.begin()->first]);
+    return std::make_unique<ObjectAlbedo>(object.mesh, std::move(fields));
+  }
+
+  /// Values above 1 count as 1: what a picture holds is a share.
+  std::unique_ptr<AlbedoField> build_density(const SceneObject& object) const {
+    std::map<uint16_t, std::vector<uint32_t>> triangles;
+    for (uint32_t t = 0; t < object.mesh.triangle_count(); ++t)
+      triangles[object.mesh.materials[t]].push_back(t);
+    std::vector<std::unique_ptr<AlbedoField>> fields(scene_.materials.size());
+    bool any = false;
+    for (const auto& [index, list] : triangles) {
+      const Material& material = scene_.materials[index];
+      if (!material.medium) continue;
+      if (!material.density_map) {
+        fields[index] = std::make_unique<ConstantAlbedo>(Rgb(1));
+        continue;
+      }
+      any = true;
+      const Texture& map = *material.density_map;
+      TexelArray texels = map.texels();
+      for (Vec4f& t : texels.texels) t = Vec4f(Vec3f(std::clamp(t.r, 0.0f, 1.0f)), 1);
+      const Coverage coverage =
+          texel_coverage(object.mesh, object.atlas, list, map.mapping(), texels.width, texels.height);
+      fields[index] = std::make_unique<TextureAlbedo>(object.mesh, list, texels, coverage, map.mapping());
+    }
+    if (!any) return nullptr;
     return std::make_unique<ObjectAlbedo>(object.mesh, std::move(fields));
   }
 
@@ -186,7 +213,7 @@ class AlbedoBuilder {
                                 mapping.uv_set == 0 ? object.atlas : UvAtlas(object.mesh, mapping.uv_set),
                                 triangles, mapping, texels->width, texels->height);
     AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
-                                              inversion(material), largest_value(source));
+                                        inversion(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
     if (!everywhere) fill_gutters(object.mesh, triangles, mapping, albedo.texels, coverage);
     return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);

@@ -142,6 +142,12 @@ class Rules {
       default_length(*material.medium);
       material.medium->mean_free_path /= *rule.density;
     }
+    if (rule.density_map) {
+      material.density_map = load_picture(*rule.density_map, Encoding::linear);
+      scene_.warnings.push_back("material '" + material.name +
+                                "': its density picture is read by --integrator volume and walk; surface "
+                                "takes the full density everywhere");
+    }
     if (rule.g) material.medium->g = *rule.g;
     if (rule.eta) material.medium->eta = *rule.eta;
   }

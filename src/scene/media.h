@@ -27,7 +27,8 @@ struct MaterialOverride {
   std::optional<Colour> albedo;       // single scattering
   std::optional<Colour> reflectance;  // multiple scattering, inverted
   std::optional<LengthSpecification> mean_free_path;
-  std::optional<double> density;  // divides the mean free path
+  std::optional<double> density;                     // divides the mean free path
+  std::optional<std::filesystem::path> density_map;  // a picture: share of sigma_t from place to place
   std::optional<double> g, eta, roughness;
 };
 

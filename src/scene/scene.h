@@ -40,6 +40,7 @@ struct Material {
   AlbedoSource albedo;           // read where there is a medium
   Rgb mean_albedo{0};            // of the medium over the texture; set by prepare_scene
   std::string medium_reason;     // why it became a medium or not, for `info`
+  std::shared_ptr<const Texture> density_map;     // R: share of the medium's sigma_t, 0 to 1
   std::shared_ptr<const Texture> subsurface_map;  // R: 0 plain diffuse .. 1 subsurface
 };
 
@@ -60,7 +61,8 @@ struct SceneObject {
   UvAtlas atlas;
   MeshReport report;
   /// Index into Scene::materials is mesh.materials[triangle].
-  std::unique_ptr<AlbedoField> albedo;  // set when any material of the object has a medium
+  std::unique_ptr<AlbedoField> albedo;   // set when any material of the object has a medium
+  std::unique_ptr<AlbedoField> density;  // share of sigma_t in r; set when any material has a density map
   BoundingBox bounds;
   Vec3 bounding_centre{0};  // sphere around the mesh
   double bounding_radius = 0;

@@ -198,7 +198,10 @@ class DescriptionReader {
     } else if (const auto value = object.rgb("mean_free_path", smallest, largest)) {
       rule.mean_free_path = LengthSpecification{*value, false};
     }
-    rule.density = object.number("density", smallest, largest);
+    if (object.is_string("density"))
+      rule.density_map = folder_ / *object.string("density");
+    else
+      rule.density = object.number("density", smallest, largest);
     rule.g = object.number("g", -0.99, 0.99);
     rule.eta = object.number("eta", 1, 4);
     rule.roughness = object.number("roughness", 0, 1);
