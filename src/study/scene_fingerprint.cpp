@@ -61,7 +61,7 @@ void add_material(ContentHash& hash, const Material& m) {
   hash.add(m.albedo.meaning), hash.add(m.albedo.factor), hash.add(m.albedo.vertex_colours);
   hash.add(m.albedo.strength);
   for (const auto& texture : {m.base_colour, m.metallic_roughness, m.normal, m.emissive, m.albedo.texture,
-                              m.albedo.strength_texture, m.subsurface_map})
+                              m.albedo.strength_texture, m.subsurface_map, m.density_map})
     add_texture(hash, texture);
 }
 
