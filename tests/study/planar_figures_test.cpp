@@ -18,7 +18,7 @@ TEST_CASE("eq. 2 is exact where all albedos agree, and exceeds all bounds as the
   CHECK(energy_ratio(profile, 0.3, 0.01, true) < 1);
 }
 
-TEST_CASE("one albedo never exceeds the basis; two tones of stripes do by eq. 2") {
+TEST_CASE("one albedo never exceeds the basis, two tones of stripes do by eq. 2") {
   const ProfileTable& profile = baseline_profile();
   const auto excess = [&](const char* scene, const char* model) {
     return energy_excess(PlanarModel(planar_scenes({scene}, 20).front(), model, profile), profile, 1);
