@@ -60,8 +60,8 @@ std::unique_ptr<GeodesicPath> make_straightest_path(const TriangleMesh& mesh, co
 std::unique_ptr<Geodesic> make_edge_graph(const TriangleMesh& mesh, const HalfEdgeMesh& half_edges);
 
 /// Shortest way over edges and `per_edge` points on each of them (Lanthier, Maheshwari & Sack 1997): an upper
-/// bound that converges to the polyhedral distance; with 6 points 0.5 % too long over many edges, 2 % over one.
-/// Knows what is not connected. Tenths of a second per source.
+/// bound that converges to the polyhedral distance; with 6 points 0.5 % too long over many edges, 2 % over
+/// one. Knows what is not connected. Tenths of a second per source.
 std::unique_ptr<Geodesic> make_steiner_graph(const TriangleMesh& mesh, int per_edge = 6);
 
 /// Heat method (Crane, Weischedel & Wardetzky 2013): factored once (memory about 1 kB per vertex), then two
