@@ -9,6 +9,8 @@ namespace {
 
 /// Zero for a zero or non-finite vector, so that a broken triangle spreads no NaN.
 Vec3 unit_or_zero(const Vec3& v) {
+  const double squared = glm::dot(v, v);
+  if (squared > 1e-200 && squared < 1e200) return v * (1 / std::sqrt(squared));
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return Vec3(0);
   const Vec3 scaled = v / largest;  // no overflow or underflow in the square
@@ -109,19 +111,28 @@ Vec2 TriangleMesh::uv(uint32_t triangle, Vec2 barycentric, std::size_t set) cons
   return interpolate<Vec2>(uv_sets[set], attributes[triangle], barycentric);
 }
 
+// All at once, since most of the time goes into fetching: as position(), geometric_normal() and uv() give it.
 SurfacePoint TriangleMesh::surface_point(uint32_t triangle, Vec2 barycentric) const {
+  const Index3& corner = corners[triangle];
+  const Index3& attribute = attributes.empty() ? corner : attributes[triangle];
+  const double w0 = 1 - barycentric.x - barycentric.y, w1 = barycentric.x, w2 = barycentric.y;
+  const Vec3 &a = positions[corner[0]], &b = positions[corner[1]], &c = positions[corner[2]];
   SurfacePoint point;
   point.triangle = triangle;
   point.barycentric = barycentric;
-  point.position = position(triangle, barycentric);
-  point.geometric_normal = geometric_normal(triangle);
+  point.position = a * w0 + b * w1 + c * w2;
+  point.geometric_normal = unit_or_zero(glm::cross(b - a, c - a));
   point.shading_normal = point.geometric_normal;
   if (!normals.empty()) {
-    const Vec3 smooth = unit_or_zero(interpolate<Vec3>(normals, attributes[triangle], barycentric));
+    const Vec3 smooth = unit_or_zero(Vec3(normals[attribute[0]]) * w0 + Vec3(normals[attribute[1]]) * w1 +
+                                     Vec3(normals[attribute[2]]) * w2);
     if (smooth != Vec3(0))
       point.shading_normal = glm::dot(smooth, point.geometric_normal) < 0 ? -smooth : smooth;
   }
-  point.uv = uv(triangle, barycentric);
+  if (!uv_sets.empty() && !uv_sets.front().empty()) {
+    const std::vector<Vec2f>& set = uv_sets.front();
+    point.uv = Vec2(set[attribute[0]]) * w0 + Vec2(set[attribute[1]]) * w1 + Vec2(set[attribute[2]]) * w2;
+  }
   return point;
 }
 

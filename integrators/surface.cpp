@@ -23,9 +23,9 @@ double power_heuristic(double pdf, double other) {
   return pdf * pdf / (pdf * pdf + other * other);
 }
 
-Vec3 cosine_direction(const Vec3& normal, Vec2 u) {
-  const double r = std::sqrt(u.x), phi = 2 * pi * u.y;
-  return Frame(normal).to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)});
+/// Of lights without size: walks have to meet them.
+double angular_size(const SurfaceOptions& options) {
+  return options.angular_size.value_or(options.transport == Transport::bssrdf ? 0 : default_angular_size);
 }
 
 }  // namespace
@@ -57,10 +57,11 @@ struct SurfaceIntegrator::Arrival {
   /// Density per solid angle with which the direction was drawn; 0 where light sampling had no chance, so
   /// that lights the ray finds count in full.
   double pdf = 0;
-  Vec3 origin{0}, normal{0};  // as given to the light sampler
-  int bounces = 0;            // diffuse ones so far
-  int chain = 0;              // mirror and refraction events so far
-  double throughput = 1;      // an estimate of the path's weight, for Russian roulette
+  const LightSampler* rival = nullptr;  // the light sampler that had the chance
+  Vec3 origin{0}, normal{0};            // as given to it
+  int bounces = 0;                      // diffuse ones so far
+  int chain = 0;                        // mirror and refraction events so far
+  double throughput = 1;                // an estimate of the path's weight, for Russian roulette
   bool camera = false;
 
   Arrival specular(double factor) const {
@@ -71,9 +72,11 @@ struct SurfaceIntegrator::Arrival {
     next.throughput *= factor;
     return next;
   }
-  Arrival scattered(double direction_pdf, const SurfacePoint& from, double factor) const {
+  Arrival scattered(double direction_pdf, const LightSampler& lights, const SurfacePoint& from,
+                    double factor) const {
     Arrival next = specular(factor);
     next.pdf = direction_pdf;
+    next.rival = &lights;
     next.origin = from.position;
     next.normal = from.geometric_normal;
     return next;
@@ -84,8 +87,9 @@ struct SurfaceIntegrator::Arrival {
 SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& options)
     : scene_(scene),
       options_(options),
-      lights_(scene, options.angular_size.value_or(
-                         options.transport == Transport::bssrdf ? 0 : default_angular_size)),
+      camera_(options.camera, options.width, options.height),
+      lights_(scene, angular_size(options)),
+      near_lights_(scene, angular_size(options), LightSampler::Lights::but_environment),
       guide_(scene, lights_) {
   const double reach = std::max(glm::length(scene.bounds.low), glm::length(scene.bounds.high));
   offset_ = 0x1p-20 * reach;  // a few units in the last place of Embree's floats
@@ -156,7 +160,7 @@ const SurfaceIntegrator::Body* SurfaceIntegrator::body(const Interaction& it) co
 PixelSample SurfaceIntegrator::sample(int x, int y, const Sampler& sampler) const {
   Path path{sampler};
   const Vec2 pixel = Vec2(x, y) + sampler.get_2d(Dimension::pixel);
-  const Ray ray = options_.camera.ray(pixel, options_.width, options_.height);
+  const Ray ray = camera_.ray(pixel);
   Arrival arrival;
   arrival.camera = true;
   PixelSample result;
@@ -206,8 +210,8 @@ Rgb SurfaceIntegrator::environment(const Ray& ray, const Arrival& arrival) const
   if (!scene_.environment || (arrival.camera && !options_.environment_visible)) return Rgb();
   const Rgb radiance = scene_.environment->radiance(ray.direction);
   if (arrival.pdf == 0) return radiance;
-  return radiance *
-         arrival.weight_against(lights_.pdf_environment(arrival.origin, arrival.normal, ray.direction));
+  return radiance * arrival.weight_against(
+                        arrival.rival->pdf_environment(arrival.origin, arrival.normal, ray.direction));
 }
 
 Rgb SurfaceIntegrator::disks(const Ray& ray, double t_max, const Arrival& arrival) const {
@@ -216,15 +220,15 @@ Rgb SurfaceIntegrator::disks(const Ray& ray, double t_max, const Arrival& arriva
   Rgb sum;
   if (const auto hit = lights_.nearest_disk(until)) {
     const double pdf =
-        arrival.pdf == 0 ? 0 : lights_.pdf_disk(arrival.origin, arrival.normal, ray.direction, *hit);
+        arrival.pdf == 0 ? 0 : arrival.rival->pdf_disk(arrival.origin, arrival.normal, ray.direction, *hit);
     sum += hit->radiance * arrival.weight_against(pdf);
   }
   // The camera does not see what stands for a light without size.
   for (std::size_t i = 0; i < lights_.cone_count() && !arrival.camera; ++i)
-    if (const auto hit = lights_.cone(i, until))
-      sum +=
-          hit->radiance * arrival.weight_against(
-                              arrival.pdf == 0 ? 0 : lights_.pdf_cone(arrival.origin, arrival.normal, *hit));
+    if (const auto hit = lights_.cone(i, until)) {
+      const double pdf = arrival.pdf == 0 ? 0 : arrival.rival->pdf_cone(arrival.origin, arrival.normal, *hit);
+      sum += hit->radiance * arrival.weight_against(pdf);
+    }
   return sum;
 }
 
@@ -232,8 +236,8 @@ Rgb SurfaceIntegrator::emission(const Ray& ray, const Hit& hit, const Arrival& a
   if (scene_.material(hit).emission.is_black()) return Rgb();
   const Rgb radiance = lights_.emitted(hit, ray.direction);
   if (arrival.pdf == 0 || radiance.is_black()) return radiance;
-  return radiance *
-         arrival.weight_against(lights_.pdf_triangle(arrival.origin, arrival.normal, ray.direction, hit));
+  return radiance * arrival.weight_against(
+                        arrival.rival->pdf_triangle(arrival.origin, arrival.normal, ray.direction, hit));
 }
 
 Rgb SurfaceIntegrator::fresnel(const Interaction& it, double cosine) const {
@@ -256,9 +260,10 @@ Rgb SurfaceIntegrator::outgoing(const Interaction& it, const Arrival& arrival, P
     const Rgb body = from_body(it, arrival, path);
     if (!shows(Layer::mirror, arrival)) return body;
     // A blurred and faint mirror image is not worth two rays every time.
-    const double q = it.roughness.is_smooth() ? 1 : std::clamp(4 * strength, 0.25, 1.0);
+    const double q = it.roughness.is_smooth() ? 1 : std::clamp(3 * strength, 0.15, 1.0);
     if (q < 1 && path.sampler.get_1d(Dimension::lobe, vertex) >= q) return body;
-    return body + mirrored(it, arrival, path) / q;
+    Path apart{path.sampler, 0x8000u};
+    return body + mirrored(it, arrival, apart) / q;
   }
   const double through = (1 - strength) * std::max(0.05, it.base_colour.max());
   const double p = strength / std::max(1e-9, strength + through);
@@ -305,7 +310,7 @@ Rgb SurfaceIntegrator::mirrored_rough(const Interaction& it, const Arrival& arri
   const Vec3 direction = frame.to_world(wi);
   if (wi.z <= 0 || glm::dot(direction, it.point.geometric_normal) <= 0) return sum;
   const Rgb factor = fresnel(it, glm::dot(wo, h)) * (ggx.masking_shadowing(wo, wi) / ggx.masking(wo));
-  const Arrival next = arrival.scattered(ggx.pdf_reflection(wo, wi), it.point, factor.max());
+  const Arrival next = arrival.scattered(ggx.pdf_reflection(wo, wi), lights_, it.point, factor.max());
   return sum + factor * (incoming(leaving(it.point, direction), next, path) +
                          lights_.uniform_radiance(it.point.position));
 }
@@ -376,38 +381,51 @@ Rgb SurfaceIntegrator::entering_along(const SubsurfaceEntry& entry, const Arriva
          lights_.uniform_radiance(entry.point.position);
 }
 
+// Environment and other surfaces are met by one ray, drawn for both; other lights are sampled by themselves.
 Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_normal,
                                 const Interface& interface, double weight, const Arrival& arrival,
                                 Path& path) const {
   const uint32_t vertex = path.vertices++;
-  Rgb sum = entering_from_light(point, mirror_normal, interface, vertex, path) +
-            pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position);
-  const Vec3 direction =
-      cosine_direction(point.shading_normal, path.sampler.get_2d(Dimension::diffuse_direction, vertex));
-  if (glm::dot(direction, point.geometric_normal) <= 0) return sum;
-  const double transmission = interface.transmission(glm::dot(mirror_normal, direction));
-  if (transmission <= 0) return sum;
-  Arrival next =
-      arrival.scattered(glm::dot(point.shading_normal, direction) * inv_pi, point, weight * transmission);
+  Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position);
+  if (near_lights_.has_lights()) sum += entering_from_light(point, mirror_normal, interface, vertex, path);
+  const Vec3& normal = point.shading_normal;
+  const Vec2 u = path.sampler.get_2d(Dimension::diffuse_direction, vertex);
+  HemisphereSample chosen;
+  if (scene_.environment) {
+    chosen = scene_.environment->sample_hemisphere(normal, u);
+  } else {
+    chosen.direction = cosine_direction(normal, u);
+    chosen.pdf = glm::dot(normal, chosen.direction) * inv_pi;
+  }
+  const double cosine = glm::dot(normal, chosen.direction);
+  if (!(chosen.pdf > 0) || cosine <= 0 || glm::dot(chosen.direction, point.geometric_normal) <= 0) return sum;
+  const double factor =
+      interface.transmission(glm::dot(mirror_normal, chosen.direction)) * cosine / chosen.pdf;
+  if (factor <= 0) return sum;
+  Arrival next = arrival.scattered(chosen.pdf, near_lights_, point, weight * inv_pi * factor);
   ++next.bounces;
   next.chain = 0;
-  sum += pi * transmission * incoming(leaving(point, direction), next, path);
-  return sum;
+  return sum + factor * incoming(leaving(point, chosen.direction), next, path);
 }
 
 Rgb SurfaceIntegrator::entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal,
                                            const Interface& interface, uint32_t vertex,
                                            const Path& path) const {
-  const auto light = lights_.sample(point.position, point.geometric_normal,
-                                    path.sampler.get_1d(Dimension::light_choice, vertex),
-                                    path.sampler.get_2d(Dimension::light_point, vertex));
+  const auto light = near_lights_.sample(point.position, point.geometric_normal,
+                                         path.sampler.get_1d(Dimension::light_choice, vertex),
+                                         path.sampler.get_2d(Dimension::light_point, vertex));
   if (!light) return Rgb();
   const double cosine = glm::dot(point.shading_normal, light->direction);
   if (cosine <= 0 || glm::dot(point.geometric_normal, light->direction) <= 0) return Rgb();
   const double transmission = interface.transmission(glm::dot(mirror_normal, light->direction));
   if (transmission <= 0 || !lit(point, *light, opacity_number(path, vertex))) return Rgb();
-  const double weight = light->delta ? 1 : power_heuristic(light->pdf, cosine * inv_pi);
-  return light->radiance * (transmission * cosine * weight / light->pdf);
+  const double other = light->delta ? 0 : entering_pdf(point.shading_normal, light->direction);
+  return light->radiance * (transmission * cosine * power_heuristic(light->pdf, other) / light->pdf);
+}
+
+double SurfaceIntegrator::entering_pdf(const Vec3& normal, const Vec3& direction) const {
+  if (scene_.environment) return scene_.environment->pdf_hemisphere(normal, direction);
+  return std::max(0.0, glm::dot(normal, direction)) * inv_pi;
 }
 
 // Light that crosses the medium without scattering, as a path of refractions and internal reflections. A

@@ -100,6 +100,8 @@ class SurfaceIntegrator final : public Integrator {
                           uint32_t vertex, const Path& path) const;
 
   Rgb unscattered_share(const Body& body, const Ray& ray, double distance, Rng rng) const;
+  /// Density of the direction in which entering() looks for the environment and other surfaces.
+  double entering_pdf(const Vec3& normal, const Vec3& direction) const;
 
   Rgb fresnel(const Interaction& it, double cosine) const;
   double opacity_number(const Path& path, uint32_t vertex) const;
@@ -113,7 +115,9 @@ class SurfaceIntegrator final : public Integrator {
 
   const Scene& scene_;
   SurfaceOptions options_;
+  CameraRays camera_;
   LightSampler lights_;
+  LightSampler near_lights_;  // all but the environment, which the ray that looks for other surfaces finds
   LightGuide guide_;
   double offset_;  // m: how far rays start off a surface
   bool stochastic_opacity_ = false;

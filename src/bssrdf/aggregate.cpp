@@ -80,4 +80,8 @@ Rgb AggregateBssrdf::typical_albedo(const BssrdfPoint& exit) const {
   return albedo_around(medium_, placement_, exit);
 }
 
+double AggregateBssrdf::typical_albedo_reach() const {
+  return smooth_distance(medium_);
+}
+
 }  // namespace alabaster

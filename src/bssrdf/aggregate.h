@@ -17,6 +17,7 @@ class AggregateBssrdf final : public Bssrdf {
   AggregateBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement, double width, int samples);
   Rgb evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const override;
   Rgb typical_albedo(const BssrdfPoint& exit) const override;
+  double typical_albedo_reach() const override;
 
  private:
   Rgb ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& exit, double distance) const;

@@ -57,6 +57,9 @@ class Bssrdf {
   /// The albedo a typical evaluation for this exit sees: what sampling should be aimed at. 0 in a channel
   /// only where S_V is 0 for every entry.
   virtual Rgb typical_albedo(const BssrdfPoint& exit) const { return exit.albedo; }
+  /// Over what distance that hardly changes, m, so that one value may serve a whole small triangle; 0: it may
+  /// change at once.
+  virtual double typical_albedo_reach() const { return 0; }
 
   /// Draws a distance from the exit, m, for one channel, u in [0, 1).
   double sample_distance(const BssrdfPoint& exit, int channel, double u) const;

@@ -42,6 +42,10 @@ Rgb CompositeBssrdf::typical_albedo(const BssrdfPoint& exit) const {
   return around;
 }
 
+double CompositeBssrdf::typical_albedo_reach() const {
+  return smooth_distance(medium_);
+}
+
 OrderOneApartBssrdf::OrderOneApartBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement)
     : Bssrdf(medium), placement_(placement) {}
 
@@ -56,6 +60,10 @@ Rgb OrderOneApartBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& e
 
 Rgb OrderOneApartBssrdf::typical_albedo(const BssrdfPoint& exit) const {
   return albedo_around(medium_, placement_, exit);
+}
+
+double OrderOneApartBssrdf::typical_albedo_reach() const {
+  return smooth_distance(medium_);
 }
 
 }  // namespace alabaster

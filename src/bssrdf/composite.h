@@ -15,6 +15,7 @@ class CompositeBssrdf final : public Bssrdf {
   CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement, Kernel kernel = Kernel::ek17);
   Rgb evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const override;
   Rgb typical_albedo(const BssrdfPoint& exit) const override;
+  double typical_albedo_reach() const override;
 
  private:
   const KernelPlacement& placement_;
@@ -30,6 +31,7 @@ class OrderOneApartBssrdf final : public Bssrdf {
   OrderOneApartBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement);
   Rgb evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const override;
   Rgb typical_albedo(const BssrdfPoint& exit) const override;
+  double typical_albedo_reach() const override;
 
  private:
   const KernelPlacement& placement_;

@@ -31,6 +31,8 @@ constexpr double brightest_share = 0.05;
 constexpr double body_width = 0.5;
 constexpr double body_reach = 1.3;
 constexpr double most_body_light = 0.85;
+/// Entries expected to be worth less than this part of all that leaves are followed more seldom.
+constexpr double full_worth = 1;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -53,22 +55,25 @@ std::array<Vec3, 3> tilted_axes(const Vec3& normal) {
           n + aside * (-half * frame.tangent - root * frame.bitangent)};
 }
 
-ProbeSampler::Exit::Axis axis_towards(const Vec3& direction, const Vec3& to_centre) {
-  ProbeSampler::Exit::Axis axis;
-  axis.direction = direction;
-  const Vec3 offset = to_centre - glm::dot(to_centre, direction) * direction;
-  axis.centre = glm::length(offset);
-  axis.across = axis.centre > 1e-9 * glm::length(to_centre) ? offset / axis.centre : Frame(direction).tangent;
-  axis.aside = glm::cross(direction, axis.across);
-  return axis;
+/// An albedo in 63 bits, to a few parts in 10^7; the last bit tells it from nothing.
+uint64_t pack(const Rgb& albedo) {
+  uint64_t bits = 1;
+  for (int c = 0; c < 3; ++c)
+    bits |= static_cast<uint64_t>(std::ceil(std::clamp(albedo[c], 0.0, 1.0) * 0x1fffff)) << (1 + 21 * c);
+  return bits;
+}
+Rgb unpack(uint64_t bits) {
+  Rgb albedo;
+  for (int c = 0; c < 3; ++c)
+    albedo[c] = static_cast<double>((bits >> (1 + 21 * c)) & 0x1fffff) * (1.0 / 0x1fffff);
+  return albedo;
 }
 
 }  // namespace
 
 /// An entry found, before S_V is evaluated.
 struct ProbeSampler::Candidate {
-  uint32_t triangle;
-  Vec2 barycentric;
+  SurfacePoint surface;
   double density;
   PointShape shape;
   double importance = 1;  // about S_V / density
@@ -89,6 +94,8 @@ ProbeSampler::ProbeSampler(const Bssrdf& model, ProbeTarget target)
     brightest_level_[static_cast<std::size_t>(c)] = DistanceTable::level(brightest[c]);
   for (int level = 0; level < DistanceTable::level_count; ++level)
     near_distance_[static_cast<std::size_t>(level)] = model.distances().sample(level, near_quantile);
+  if (model.typical_albedo_reach() > 0)
+    typical_ = std::vector<std::atomic<uint64_t>>(target_.mesh->triangle_count());
 }
 
 bool ProbeSampler::in_medium(uint32_t triangle) const {
@@ -96,31 +103,61 @@ bool ProbeSampler::in_medium(uint32_t triangle) const {
          target_.material_in_medium[target_.mesh->materials[triangle]] != 0;
 }
 
+// The value at the centre serves all of a small triangle. It is the same whoever asks first.
+Rgb ProbeSampler::typical_albedo(const BssrdfPoint& exit) const {
+  if (typical_.empty()) return model_.typical_albedo(exit);
+  const uint32_t triangle = exit.surface.triangle;
+  std::atomic<uint64_t>& slot = typical_[triangle];
+  if (const uint64_t known = slot.load(std::memory_order_relaxed); known != 0)
+    return known & 1 ? unpack(known) : model_.typical_albedo(exit);
+  const TriangleMesh& mesh = *target_.mesh;
+  const Index3& corners = mesh.corners[triangle];
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest =
+        std::max(longest, glm::distance(mesh.positions[corners[k]], mesh.positions[corners[(k + 1) % 3]]));
+  constexpr uint64_t too_large = 2;
+  if (longest > model_.typical_albedo_reach()) {
+    slot.store(too_large, std::memory_order_relaxed);
+    return model_.typical_albedo(exit);
+  }
+  BssrdfPoint centre;
+  centre.surface = mesh.surface_point(triangle, Vec2(1.0 / 3));
+  centre.surface.object = target_.object;
+  centre.albedo = Rgb(1);  // black points among others must not make it black
+  const uint64_t packed = pack(model_.typical_albedo(centre));
+  slot.store(packed, std::memory_order_relaxed);
+  return unpack(packed);
+}
+
 std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
-  const Rgb typical = model_.typical_albedo(point);
+  const Rgb typical = typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
 
-  Exit exit;
+  std::optional<Exit> result(std::in_place);
+  Exit& exit = *result;
   exit.point = point;
   const Vec3 to_centre = centre_ - point.surface.position;
   exit.typical = typical;
   const double body_share = add_components(exit, typical);
   // Light that crosses a body comes from straight behind, whatever the surroundings face.
-  Vec3 facing = glm::normalize(Vec3(facing_[point.surface.triangle]));
+  Vec3 facing(facing_[point.surface.triangle]);
   if (body_share > 0) {
     const double own = std::min(1.0, 4 * body_share);
     facing = glm::normalize((1 - own) * facing + (own + 1e-9) * point.shape.normal);
   }
   const std::array<Vec3, 3> directions = tilted_axes(facing);
-  for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis_towards(directions[a], to_centre);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Vec3 to_circle = to_centre - glm::dot(to_centre, directions[a]) * directions[a];
+    exit.axes[a] = {directions[a], to_circle, glm::length(to_circle)};
+  }
+  const double farthest = glm::length(to_centre) + radius_;
   for (int k = 0; k < exit.component_count; ++k) {
     Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    for (std::size_t a = 0; a < 3; ++a) {
-      c.reach[a] = component_cdf(c, exit.axes[a].centre + radius_);
-      c.density_scale[a] = c.probability * c.sigma_t / c.reach[a];
-    }
+    c.reach = component_cdf(c, farthest);
+    c.density_scale = c.probability * c.sigma_t / c.reach;
   }
-  return exit;
+  return result;
 }
 
 double ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
@@ -191,12 +228,12 @@ double ProbeSampler::component_radius(const Exit::Component& c, double u) const 
   return c.level < 0 ? std::sqrt(u / (1 - u)) : model_.distances().sample(c.level, u);
 }
 
-/// Density per metre of the radius around an axis.
-double ProbeSampler::radius_density(const Exit& exit, std::size_t axis, double radius) const {
+/// Density per metre of the radius around any axis.
+double ProbeSampler::radius_density(const Exit& exit, double radius) const {
   double sum = 0;
   for (int k = 0; k < exit.component_count; ++k) {
     const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    sum += c.density_scale[axis] * component_pdf(c, radius);
+    sum += c.density_scale * component_pdf(c, radius);
   }
   return sum;
 }
@@ -217,10 +254,15 @@ std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 di
   while (k + 1 < static_cast<std::size_t>(exit.component_count) && u >= exit.components[k].probability)
     u -= exit.components[k++].probability;
   const Exit::Component& c = exit.components[k];
-  const double radius = component_radius(c, disk.x * c.reach[a]) / c.sigma_t;
-  const double angle = half_angle(axis, radius) * (2 * disk.y - 1);
+  const double radius = component_radius(c, disk.x * c.reach) / c.sigma_t;
+  const double half_arc = half_angle(axis, radius);
+  if (!(half_arc > 0)) return std::nullopt;
+  const double angle = half_arc * (2 * disk.y - 1);
+  const Vec3 across =
+      axis.centre > 1e-9 * radius_ ? axis.to_circle / axis.centre : Frame(axis.direction).tangent;
+  const Vec3 aside = glm::cross(axis.direction, across);
   const Vec3 centre =
-      exit.point.surface.position + radius * (std::cos(angle) * axis.across + std::sin(angle) * axis.aside);
+      exit.point.surface.position + radius * (std::cos(angle) * across + std::sin(angle) * aside);
 
   // The chord within the bounding sphere, then its near part.
   const Vec3 to_sphere = centre_ - centre;
@@ -241,22 +283,18 @@ std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 di
   return probe;
 }
 
-double ProbeSampler::density(const Exit& exit, const Vec3& position, const Vec3& normal) const {
-  const Vec3 offset = position - exit.point.surface.position;
+double ProbeSampler::density(const Exit& exit, const SurfacePoint& entry) const {
+  const Vec3 offset = entry.position - exit.point.surface.position;
   double sum = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const Exit::Axis& axis = exit.axes[a];
     const double along = glm::dot(offset, axis.direction);
     const double radius = std::max(glm::length(offset - along * axis.direction), 1e-100);
     const bool near = std::abs(along) <= exit.near_limit + near_radii * radius;
-    sum += (near ? 1 : far_probability) * std::abs(glm::dot(normal, axis.direction)) *
-           radius_density(exit, a, radius) / (radius * 2 * half_angle(axis, radius));
+    sum += (near ? 1 : far_probability) * std::abs(glm::dot(entry.geometric_normal, axis.direction)) *
+           radius_density(exit, radius) / (radius * 2 * half_angle(axis, radius));
   }
   return area_share / area_.area() + (1 - area_share) * sum / 3;
-}
-
-double ProbeSampler::density(const Exit& exit, const SurfacePoint& entry) const {
-  return density(exit, entry.position, entry.geometric_normal);
 }
 
 std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const EntryRandom& u) const {
@@ -265,13 +303,15 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
   candidates.clear();
   const auto add = [&](uint32_t triangle, Vec2 barycentric) {
     if (!in_medium(triangle)) return;
-    const TriangleMesh& mesh = *target_.mesh;
-    const Vec3 position = mesh.position(triangle, barycentric);
-    const double distance = glm::distance(position, exit.point.surface.position);
+    const SurfacePoint surface = target_.mesh->surface_point(triangle, barycentric);
+    const double distance = glm::distance(surface.position, exit.point.surface.position);
     if (!(distance > 0)) return;
-    const double expected = density(exit, position, mesh.geometric_normal(triangle));
-    candidates.push_back({triangle, barycentric, expected, model_.medium().shape_at(triangle, barycentric)});
-    candidates.back().importance = importance(exit, candidates.back(), position);
+    Candidate& candidate = candidates.emplace_back();
+    candidate.surface = surface;
+    candidate.surface.object = target_.object;
+    candidate.density = density(exit, surface);
+    candidate.shape = model_.medium().shape_at(triangle, barycentric);
+    candidate.importance = importance(exit, candidate, distance);
   };
   Vec2 choice = u.choice;
   if (decide(choice.x, area_share)) {
@@ -286,20 +326,16 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
 
 /// About S_V / density: without the shape basis by the density of the radii, which costs a table lookup; with
 /// it by the basis itself, since the far side of a body may send more light than the near side.
-double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, const Vec3& position) const {
-  const SurfacePoint& surface = exit.point.surface;
-  if (!body_light_) {
-    const double distance = glm::distance(position, surface.position);
-    return radius_density(exit, 0, distance) / (distance * candidate.density);
-  }
-  const PairShape pair = model_.pair(position, candidate.shape, surface.position, exit.point.shape);
+double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, double distance) const {
+  if (!body_light_) return radius_density(exit, distance) / (distance * candidate.density);
+  const PairShape pair =
+      model_.pair(candidate.surface.position, candidate.shape, exit.point.surface.position, exit.point.shape);
   return model_.basis_over_albedo(exit.typical, pair).mean() / candidate.density;
 }
 
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {
-  SurfacePoint surface = target_.mesh->surface_point(candidate.triangle, candidate.barycentric);
-  surface.object = target_.object;
   EntrySample entry;
+  const SurfacePoint& surface = candidate.surface;
   entry.point = {surface, model_.medium().albedo->at(surface), candidate.shape};
   entry.density = candidate.density;
   entry.weight = model_.evaluate(entry.point, exit.point) * (factor / candidate.density);
@@ -319,7 +355,12 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, 
   double left = rest * sum;
   std::size_t k = 0;
   while (k + 1 < candidates.size() && left >= candidates[k].importance) left -= candidates[k++].importance;
-  return finish(*exit, candidates[k], sum / candidates[k].importance);
+  // What it should be worth, in units of what leaves under uniform light. The less it is, the more seldom it
+  // is worth evaluating S_V and the light there; the part of the random number left over decides.
+  const double worth = body_light_ ? full_worth : sum / (2 * pi);
+  const double survival = std::min(1.0, worth / full_worth);
+  if (survival < 1 && left >= survival * candidates[k].importance) return std::nullopt;
+  return finish(*exit, candidates[k], sum / (candidates[k].importance * survival));
 }
 
 std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, const Sampler& sampler,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -57,17 +58,17 @@ class ProbeSampler {
   struct Exit {
     /// Radii for one channel at one albedo.
     struct Component {
-      int level = 0;       // of the distance table; -1: a disk for light that crosses the body
-      double sigma_t = 0;  // 1/m; of the disk the inverse of its radius
-      double probability = 0;
-      // Per axis: the share of the distribution within the axis's limit, and what its density is multiplied
-      // by.
-      std::array<double, 3> reach{}, density_scale{};
+      int level;       // of the distance table; -1: a disk for light that crosses the body
+      double sigma_t;  // 1/m; of the disk the inverse of its radius
+      double probability;
+      double reach;          // share of the distribution within the object's sphere
+      double density_scale;  // what its density is multiplied by
     };
-    /// A probe direction with its disk, seen from which the object's bounding sphere is a circle.
+    /// A probe direction, seen from which the object's bounding sphere is a circle.
     struct Axis {
-      Vec3 direction{0}, across{0}, aside{0};  // orthonormal; across points to the circle's centre
-      double centre = 0;                       // m: distance of the circle's centre
+      Vec3 direction;  // unit
+      Vec3 to_circle;  // to the circle's centre, perpendicular to the direction, m
+      double centre;   // m: length of that
     };
     BssrdfPoint point;
     std::array<Axis, 3> axes;
@@ -102,16 +103,16 @@ class ProbeSampler {
   struct Candidate;
   std::span<Candidate> draw(const Exit& exit, const EntryRandom& u) const;
   EntrySample finish(const Exit& exit, const Candidate& candidate, double factor) const;
+  Rgb typical_albedo(const BssrdfPoint& exit) const;
   /// Returns the share of light that crosses the body.
   double add_components(Exit& exit, const Rgb& typical) const;
   void add_body_light(Exit& exit, double share) const;
-  double importance(const Exit& exit, const Candidate& candidate, const Vec3& position) const;
+  double importance(const Exit& exit, const Candidate& candidate, double distance) const;
   double component_pdf(const Exit::Component& component, double radius) const;
   double component_cdf(const Exit::Component& component, double radius) const;
   double component_radius(const Exit::Component& component, double u) const;
-  double radius_density(const Exit& exit, std::size_t axis, double radius) const;
+  double radius_density(const Exit& exit, double radius) const;
   double half_angle(const Exit::Axis& axis, double radius) const;
-  double density(const Exit& exit, const Vec3& position, const Vec3& normal) const;
   bool in_medium(uint32_t triangle) const;
 
   const Bssrdf& model_;
@@ -119,7 +120,9 @@ class ProbeSampler {
   AreaSampler area_;
   std::vector<Vec3f> facing_;            // per triangle: what the axes are tilted against
   std::optional<BodyLight> body_light_;  // for the shape basis
-  Vec3 centre_{0};                       // of a sphere around the object
+  // Per triangle: its typical albedo once it was asked for, packed; empty where the model's changes at once.
+  mutable std::vector<std::atomic<uint64_t>> typical_;
+  Vec3 centre_{0};  // of a sphere around the object
   double radius_ = 0;
   std::array<int, 3> brightest_level_{};                            // per channel
   std::array<double, DistanceTable::level_count> near_distance_{};  // optical

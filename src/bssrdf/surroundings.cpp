@@ -4,9 +4,20 @@
 
 namespace alabaster {
 
+namespace {
+
+double deviation(const BssrdfMedium& medium) {
+  return 2 / medium.sigma_t.mean();
+}
+
+}  // namespace
+
+double smooth_distance(const BssrdfMedium& medium) {
+  return 0.25 * deviation(medium);
+}
+
 Rgb albedo_around(const BssrdfMedium& medium, const KernelPlacement& placement, const BssrdfPoint& exit) {
-  const double sigma = 2 / medium.sigma_t.mean();
-  const Rgb mean = medium.albedo->filtered(placement.around(exit.surface, sigma));
+  const Rgb mean = medium.albedo->filtered(placement.around(exit.surface, deviation(medium)));
   const Rgb floor = 0.01 * medium.albedo->max();
   return {std::max(mean.r, floor.r), std::max(mean.g, floor.g), std::max(mean.b, floor.b)};
 }

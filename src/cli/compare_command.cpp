@@ -68,9 +68,28 @@ std::vector<bool> read_mask(const std::string& path, const Image& a) {
   return inside;
 }
 
+/// What both pictures cover: alpha above one half.
+std::vector<bool> covered_by_both(const Image& a, const std::string& name_a, const Image& b,
+                                  const std::string& name_b) {
+  const auto alpha_of = [](const Image& image, const std::string& name) {
+    const auto colour = find_colour(image);
+    if (!colour || colour->alpha < 0)
+      throw InputError(name, "has no alpha channel; --mask alpha needs one in both pictures");
+    return colour->alpha;
+  };
+  const int alpha_a = alpha_of(a, name_a), alpha_b = alpha_of(b, name_b);
+  std::vector<bool> inside;
+  if (a.width() != b.width() || a.height() != b.height()) return inside;  // refused by the comparison
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      inside.push_back(a.at(alpha_a, x, y) > 0.5f && b.at(alpha_b, x, y) > 0.5f);
+  return inside;
+}
+
 json to_json(const Metrics& m) {
   const auto optional = [](const std::optional<double>& v) { return v ? json(*v) : json(nullptr); };
   return {{"rmse_over_rms", m.rmse_over_rms},
+          {"rmse_over_mean", m.rmse_over_mean},
           {"bias", optional(m.bias)},
           {"noise", optional(m.noise)},
           {"mean_bias", m.mean_bias},
@@ -98,6 +117,7 @@ void print(const Metrics& m) {
   const auto interval = [](const std::optional<double>& v, const char* meaning) {
     return v ? fmt::format("+- {:.2g} ({})", *v, meaning) : std::string(meaning);
   };
+  line("rmse_over_mean", number(m.rmse_over_mean), "error over the reference's mean");
   line("bias", number(m.bias), interval(m.bias_interval, "the same without noise").c_str());
   line("noise", number(m.noise), "noise of both pictures");
   line("mean_bias", number(m.mean_bias), interval(m.mean_bias_interval, "mean(A) / mean(B) - 1").c_str());
@@ -125,7 +145,10 @@ void run(const CompareArguments& arguments) {
   const Image a = read_linear(arguments.a), b = read_linear(arguments.b);
   CompareOptions options;
   options.fit_scale = arguments.scale == "fit";
-  if (!arguments.mask.empty()) options.mask = read_mask(arguments.mask, a);
+  if (arguments.mask == "alpha")
+    options.mask = covered_by_both(a, arguments.a, b, arguments.b);
+  else if (!arguments.mask.empty())
+    options.mask = read_mask(arguments.mask, a);
   const Metrics metrics = compare_images(a, b, options, arguments.a, arguments.b);
   for (const auto& [name, image] : {std::pair(&arguments.a, &a), {&arguments.b, &b}})
     if (!has_variance(*image)) say(*name + ": has no variance channels: bias and noise are unknown");
@@ -148,7 +171,9 @@ void add_compare_command(CLI::App& app) {
   command->add_option("B", arguments->b, "Reference")->required();
   command->add_flag("--json", arguments->as_json, "Print JSON");
   command->add_option("--diff", arguments->diff, "Write the signed difference A - B as a false-colour PNG");
-  command->add_option("--mask", arguments->mask, "Compare only where this picture is brighter than one half");
+  command->add_option(
+      "--mask", arguments->mask,
+      "Compare only where this picture is brighter than one half; alpha: where both pictures are covered");
   command
       ->add_option("--scale", arguments->scale, "fit: multiply A by the factor that brings it closest to B")
       ->check(CLI::IsMember({"fit", "none"}));

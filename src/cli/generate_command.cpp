@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.h"
+#include "core/error.h"
 #include "core/progress.h"
 #include "study/demo_recipe.h"
 #include "texture/patterns.h"
@@ -18,6 +20,8 @@ struct GenerateOptions {
   std::vector<std::string> names{"scenes"};
   std::string folder = ".";
   bool list = false;
+  std::optional<std::size_t> triangles;
+  bool plain = false;
 };
 
 bool is_pattern(const std::string& name) {
@@ -38,10 +42,25 @@ std::vector<std::string> expand(const std::vector<std::string>& names) {
   return result;
 }
 
+void write_scene(const SceneRecipe& recipe, const std::string& folder) {
+  const std::string stem = (std::filesystem::path(folder) / recipe.id).string();
+  write_scene_files(recipe, folder);
+  std::size_t triangles = 0;
+  for (const RecipePart& part : recipe.parts) triangles += part.mesh.triangle_count();
+  say(fmt::format("{0}.glb, {0}.json: {1}, {2} triangles", stem, recipe.title, triangles));
+}
+
 void generate(const GenerateOptions& options) {
   if (options.list) {
     for (const std::string& name : expand({"all"})) fmt::print("{}\n", name);
     return;
+  }
+  if (options.triangles || options.plain) {
+    if (options.names != std::vector<std::string>{"blob"})
+      throw InputError("--triangles and --plain: only the scene 'blob' can be had so; ask for it alone");
+    const std::size_t triangles = options.triangles.value_or(15552);
+    if (triangles > 20'000'000) throw InputError("--triangles: at most 20 million");
+    return write_scene(make_blob_recipe(triangles, !options.plain), options.folder);
   }
   for (const std::string& name : expand(options.names)) {
     const std::string stem = (std::filesystem::path(options.folder) / name).string();
@@ -50,11 +69,7 @@ void generate(const GenerateOptions& options) {
       say(stem + ".png: albedo texture");
       continue;
     }
-    const SceneRecipe recipe = make_recipe(name);
-    write_scene_files(recipe, options.folder);
-    std::size_t triangles = 0;
-    for (const RecipePart& part : recipe.parts) triangles += part.mesh.triangle_count();
-    say(fmt::format("{0}.glb, {0}.json: {1}, {2} triangles", stem, recipe.title, triangles));
+    write_scene(make_recipe(name), options.folder);
   }
 }
 
@@ -69,6 +84,10 @@ void add_generate_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--output", options->folder, "Folder for NAME.glb and NAME.json, or NAME.png")
       ->capture_default_str();
+  command->add_option("--triangles", options->triangles, "blob alone: about so many triangles (15552)")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  command->add_flag("--plain", options->plain, "blob alone: one albedo, 0.9, instead of a texture");
   command->add_flag("--list", options->list, "Print the names and do nothing else");
   command->callback([options] { generate(*options); });
 }

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include "cli/commands.h"
+#include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -21,6 +23,9 @@ namespace alabaster {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* interrupted_early =
+    "alabaster: interrupted before the first sample; no image was written\n";
 
 // Outputs that cannot be written should be known before an hour of rendering.
 void check_output(const fs::path& path, const char* extension) {
@@ -166,6 +171,7 @@ std::shared_ptr<const LoadedScene> SceneCache::get(const fs::path& input, const 
     LoadOptions shared = options;  // what a job decides for itself
     shared.camera.clear();
     shared.hide_environment = false;
+    const PromptExit prompt_exit(interrupted_early);
     scene = std::make_shared<const LoadedScene>(load_scene(input, shared));
     for (const std::string& warning : scene->scene.warnings) warn(warning);
   }
@@ -224,8 +230,10 @@ bool run_render_job(const RenderJob& job, SceneCache& scenes) {
     const fs::path png =
         table && !settings.png.empty() ? numbered(settings.png, frame + 1) : fs::path(settings.png);
     if (frame == 0) say_angular_size(scene, settings);
+    std::optional<PromptExit> prompt_exit(std::in_place, interrupted_early);
     const SurfaceIntegrator integrator(
         scene, surface_options(settings, scene, turned(camera, scene, 2 * pi * frame / frames)));
+    prompt_exit.reset();
     const RenderResult result = render(integrator, render_options(settings, output.filename().string()));
     write_outputs(job, settings, result, output, png);
     say_closing_line(result, output);

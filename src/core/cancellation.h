@@ -10,4 +10,15 @@ bool cancellation_requested();
 void request_cancellation();
 void clear_cancellation();
 
+/// While one of these lives nothing is worth an orderly stop: the first Ctrl-C or SIGTERM prints `line` to
+/// standard error and ends the process with exit code 130 at once. One at a time.
+class PromptExit {
+ public:
+  /// `line` ends in a newline and outlives the object.
+  explicit PromptExit(const char* line);
+  ~PromptExit();
+  PromptExit(const PromptExit&) = delete;
+  PromptExit& operator=(const PromptExit&) = delete;
+};
+
 }  // namespace alabaster

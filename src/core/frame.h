@@ -25,4 +25,10 @@ struct Frame {
   }
 };
 
+/// A direction around a unit normal with density cos / pi, u in [0, 1).
+inline Vec3 cosine_direction(const Vec3& normal, Vec2 u) {
+  const double r = std::sqrt(u.x), phi = 2 * pi * u.y;
+  return Frame(normal).to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)});
+}
+
 }  // namespace alabaster

@@ -1,5 +1,6 @@
 #include "core/sampler.h"
 
+#include <array>
 #include <bit>
 #include <string>
 
@@ -27,23 +28,29 @@ uint32_t laine_karras(uint32_t v, uint32_t seed) {
   return v;
 }
 
-uint32_t owen_scramble(uint32_t v, uint32_t seed) {
-  return reverse_bits(laine_karras(reverse_bits(v), seed));
+// Both words at once; they change places, so that the result is the reversal of the second, then the first.
+uint64_t reverse_both(uint32_t first, uint32_t second) {
+  uint64_t v = (static_cast<uint64_t>(second) << 32) | first;
+  v = ((v >> 1) & 0x5555555555555555u) | ((v & 0x5555555555555555u) << 1);
+  v = ((v >> 2) & 0x3333333333333333u) | ((v & 0x3333333333333333u) << 2);
+  v = ((v >> 4) & 0x0f0f0f0f0f0f0f0fu) | ((v & 0x0f0f0f0f0f0f0f0fu) << 4);
+  return __builtin_bswap64(v);
 }
 
-// owen_scramble(reverse_bits(v), seed): the first Sobol coordinate, scrambled.
-uint32_t scrambled_first(uint32_t index, uint32_t seed) {
-  return reverse_bits(laine_karras(index, seed));
-}
-
-// Second coordinate of the two-dimensional Sobol sequence; the first is the bit reversal of the index.
-// Its generator matrix is Pascal's triangle modulo 2.
-uint32_t sobol_second(uint32_t index) {
+// Second coordinate of the two-dimensional Sobol sequence, its bits reversed; the first is the bit reversal
+// of the index. The generator matrix is Pascal's triangle modulo 2.
+constexpr uint32_t reversed_sobol_second(uint32_t index) {
   uint32_t result = 0;
-  for (uint32_t column = 0x80000000u; index != 0; index >>= 1, column ^= column >> 1)
+  for (uint32_t column = 1; index != 0; index >>= 1, column ^= column << 1)
     if (index & 1u) result ^= column;
   return result;
 }
+
+constexpr std::array<uint32_t, 64> first_of_sobol_second = [] {
+  std::array<uint32_t, 64> table{};
+  for (uint32_t i = 0; i < table.size(); ++i) table[i] = reversed_sobol_second(i);
+  return table;
+}();
 
 double to_unit(uint32_t v) {
   return v * 0x1p-32;
@@ -71,7 +78,7 @@ void Sampler::start(int x, int y, uint32_t index) {
   const SampleGroup group = sample_group(index);
   group_hash_ = hash_combine(base, group.size_class * 16 + group.group + 1);
   sample_hash_ = hash_combine(base ^ 0x5851f42d4c957f2dULL, index);
-  index_in_group_ = group.index;
+  reversed_index_ = reverse_bits(group.index);
   group_mask_ = group.size() - 1;
 }
 
@@ -80,17 +87,17 @@ uint64_t Sampler::dimension_hash(Dimension dimension, uint32_t occurrence) const
   return hash_combine(kind_ == SamplerKind::sobol ? group_hash_ : sample_hash_, key);
 }
 
-// Only the bits within the group: those above would be the same for all its samples, and what they add to a
-// Sobol point is drowned by its scramble.
+// An Owen scramble of the index. Only the bits within the group: those above would be the same for all its
+// samples, and what they add to a Sobol point is drowned by its scramble.
 uint32_t Sampler::shuffled_index(uint32_t seed) const {
-  return owen_scramble(index_in_group_, seed) & group_mask_;
+  return reverse_bits(laine_karras(reversed_index_, seed)) & group_mask_;
 }
 
 double Sampler::get_1d(Dimension dimension, uint32_t occurrence) const {
   const uint64_t hash = dimension_hash(dimension, occurrence);
   if (kind_ == SamplerKind::independent) return static_cast<double>(hash >> 11) * 0x1p-53;
-  return to_unit(
-      scrambled_first(shuffled_index(static_cast<uint32_t>(hash)), static_cast<uint32_t>(hash >> 32)));
+  const uint32_t index = shuffled_index(static_cast<uint32_t>(hash));
+  return to_unit(reverse_bits(laine_karras(index, static_cast<uint32_t>(hash >> 32))));
 }
 
 Vec2 Sampler::get_2d(Dimension dimension, uint32_t occurrence) const {
@@ -99,8 +106,11 @@ Vec2 Sampler::get_2d(Dimension dimension, uint32_t occurrence) const {
   if (kind_ == SamplerKind::independent)
     return {static_cast<double>(hash >> 11) * 0x1p-53, static_cast<double>(more >> 11) * 0x1p-53};
   const uint32_t index = shuffled_index(static_cast<uint32_t>(hash));
-  return {to_unit(scrambled_first(index, static_cast<uint32_t>(hash >> 32))),
-          to_unit(owen_scramble(sobol_second(index), static_cast<uint32_t>(more)))};
+  const uint32_t second =
+      index < first_of_sobol_second.size() ? first_of_sobol_second[index] : reversed_sobol_second(index);
+  const uint64_t both = reverse_both(laine_karras(index, static_cast<uint32_t>(hash >> 32)),
+                                     laine_karras(second, static_cast<uint32_t>(more)));
+  return {to_unit(static_cast<uint32_t>(both >> 32)), to_unit(static_cast<uint32_t>(both))};
 }
 
 Rng Sampler::stream(Dimension dimension, uint32_t occurrence) const {

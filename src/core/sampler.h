@@ -65,9 +65,10 @@ class Sampler {
 
   SamplerKind kind_;
   uint64_t seed_;
-  uint64_t group_hash_ = 0;   // pixel, seed and group
-  uint64_t sample_hash_ = 0;  // pixel, seed and sample
-  uint32_t index_in_group_ = 0, group_mask_ = 3;
+  uint64_t group_hash_ = 0;      // pixel, seed and group
+  uint64_t sample_hash_ = 0;     // pixel, seed and sample
+  uint32_t reversed_index_ = 0;  // of the sample in its group, bits reversed
+  uint32_t group_mask_ = 3;
 };
 
 /// The scrambling groups of the Sobol sampler: 16 groups of 4 samples, then 16 of 8, 16 of 16, ...: sixteen

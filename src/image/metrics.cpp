@@ -160,6 +160,7 @@ Metrics compare_images(const Image& a, const Image& b, const CompareOptions& opt
   const auto over_power = [&](double x) { return x == 0 ? 0 : x / power; };
   metrics.rel_mse = relative / count;
   metrics.rmse_over_rms = std::sqrt(over_power(squared));
+  metrics.rmse_over_mean = squared == 0 ? 0 : std::sqrt(squared) / std::abs(metrics.mean_b);
   metrics.mean_bias = metrics.mean_a == metrics.mean_b ? 0 : metrics.mean_a / metrics.mean_b - 1;
   if (samples.has_variances()) {
     const double variance = mean(samples.variance_a) + mean(samples.variance_b);

@@ -12,7 +12,8 @@ namespace alabaster {
 /// How far picture a is from the reference b, over all pixels and the three channels that are compared
 /// (docs/image_and_compare.md has the formulas). Ratios are to the reference's root mean square or mean.
 struct Metrics {
-  double rmse_over_rms = 0;  // sqrt(mean (a - b)^2 / mean b^2): model error and noise together
+  double rmse_over_rms = 0;   // sqrt(mean (a - b)^2 / mean b^2): model error and noise together
+  double rmse_over_mean = 0;  // sqrt(mean (a - b)^2) / mean b; over sqrt 2 for two seeds: the noise of either
   /// sign(x) sqrt|x|, x = mean((a - b)^2 - var_a - var_b) / mean b^2: the error without the noise. Nothing
   /// when a variance is missing.
   std::optional<double> bias;

@@ -60,6 +60,7 @@ TabulatedProfile::TabulatedProfile(const TableData& data)
       log2_density_(static_cast<std::size_t>(nodes) * spline_rows),
       sampled_density_(static_cast<std::size_t>(nodes) * sampled_rows),
       sampled_cdf_(static_cast<std::size_t>(nodes) * sampled_rows) {
+  for (int i = 0; i < rows; ++i) reflectance_.push_back(AlbedoRows::albedo(i) * reflectance_over_albedo_(i));
   for (int j = 0; j < nodes; ++j) {
     float* row = &log2_density_[static_cast<std::size_t>(j) * spline_rows];
     for (int i = 0; i < rows; ++i)
@@ -103,14 +104,32 @@ double TabulatedProfile::reflectance(double albedo) const {
 }
 
 double TabulatedProfile::albedo_from_reflectance(double reflectance) const {
-  // Bisection over the row position, which resolves alpha near 1.
-  double low = 0, high = rows - 1;
-  for (int step = 0; step < 52; ++step) {
-    const double middle = 0.5 * (low + high);
-    const bool brighter = AlbedoRows::albedo(middle) * reflectance_over_albedo_(middle) > reflectance;
-    (brighter ? low : high) = middle;
+  // Over the row position, which resolves alpha near 1; rows run from bright to dark.
+  if (!(reflectance < reflectance_.front())) return 1;
+  const auto darker = std::partition_point(reflectance_.begin(), reflectance_.end(),
+                                           [&](double r) { return r > reflectance; });
+  if (darker == reflectance_.end()) return AlbedoRows::albedo(rows - 1);
+  const auto row = static_cast<double>(darker - reflectance_.begin());
+  double low = row - 1, high = row;
+  double above = *(darker - 1) - reflectance, below = *darker - reflectance;
+  // Regula falsi; where one end stays, its weight is halved (the Illinois method).
+  int side = 0;
+  for (int step = 0; step < 60 && high - low > 1e-14 * row && below < 0; ++step) {
+    double middle = (low * below - high * above) / (below - above);
+    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;
+    const double value = AlbedoRows::albedo(middle) * reflectance_over_albedo_(middle) - reflectance;
+    if (value > 0) {
+      low = middle, above = value;
+      if (side == 1) below *= 0.5;
+      side = 1;
+    } else {
+      high = middle, below = value;
+      if (side == -1) above *= 0.5;
+      side = -1;
+    }
   }
-  return low == 0 ? 1.0 : AlbedoRows::albedo(high);
+  return AlbedoRows::albedo(high);
 }
 
 namespace {

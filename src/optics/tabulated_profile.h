@@ -39,6 +39,7 @@ class TabulatedProfile final : public ProfileTable {
 
   double g_, eta_;
   MonotoneCurve reflectance_over_albedo_;  // over the row position
+  std::vector<double> reflectance_;        // at the rows: brackets for the inverse
   std::vector<float> log2_density_;        // [node][row + 1], a row added at either end for the spline
   std::vector<double> sampled_density_, sampled_cdf_;  // [node][row]
 };

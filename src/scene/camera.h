@@ -21,4 +21,18 @@ struct Camera {
   Ray ray(Vec2 pixel, int width, int height) const;
 };
 
+/// A camera's rays through an image of fixed size: what all of them share is computed once.
+class CameraRays {
+ public:
+  CameraRays(const Camera& camera, int width, int height);
+  /// As Camera::ray.
+  Ray ray(Vec2 pixel) const;
+
+ private:
+  Vec3 position_, direction_;
+  Vec3 right_, down_;  // per pixel, on the image plane one unit away
+  Vec2 middle_;        // pixels
+  bool orthographic_;
+};
+
 }  // namespace alabaster

@@ -111,11 +111,11 @@ double emission_estimate(const Material& material, const TriangleMesh& mesh, uin
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene, double angular_size)
+LightSampler::LightSampler(const Scene& scene, double angular_size, Lights lights)
     : scene_(scene),
       cone_cosine_(std::cos(0.5 * angular_size)),
       cone_projected_solid_angle_(pi * std::pow(std::sin(0.5 * angular_size), 2)) {
-  if (scene.environment) {
+  if (scene.environment && lights == Lights::all) {
     environment_power_ = pi * scene.environment->mean_radiance().mean();
     if (environment_power_ > 0) {
       entries_.push_back({Kind::environment});

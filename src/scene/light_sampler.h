@@ -23,10 +23,11 @@ struct DiskHit {
 /// are added through uniform_radiance(). Thread-safe; keeps a reference to the scene.
 class LightSampler {
  public:
+  enum class Lights { all, but_environment };
   /// Point, spot and directional lights fill a cone of that full angle (radians) around their direction, with
   /// a radiance that leaves the irradiance of a surface above whose horizon they stand as it was; 0: they
   /// have no size, and no ray finds them.
-  explicit LightSampler(const Scene& scene, double angular_size = 0);
+  explicit LightSampler(const Scene& scene, double angular_size = 0, Lights lights = Lights::all);
 
   /// One direction. `pdf` holds the choice of the light as well. Nothing where no light can reach.
   std::optional<LightSample> sample(const Vec3& point, const Vec3& normal, double u_choice, Vec2 u) const;

@@ -55,6 +55,12 @@ struct LightSample {
   bool delta = false;   // a ray cannot find this light: no MIS
 };
 
+/// A direction above a surface.
+struct HemisphereSample {
+  Vec3 direction{0};  // unit
+  double pdf = 0;     // per solid angle
+};
+
 /// Light from far away: constant, analytic sky, or a lat-long image. Importance sampled.
 class Environment {
  public:
@@ -65,6 +71,12 @@ class Environment {
   virtual std::optional<LightSample> sample(Vec2 u) const = 0;
   /// Density of sample() per solid angle, positive wherever radiance() is.
   virtual double pdf(const Vec3& direction) const = 0;
+  /// A direction for light that crosses a surface of that unit normal: a mixture of sample() and the cosine
+  /// lobe. Its density is positive on the whole hemisphere, so that one ray serves the environment and what
+  /// other surfaces send. It may lie below the surface: then it counts as 0.
+  virtual HemisphereSample sample_hemisphere(const Vec3& normal, Vec2 u) const;
+  /// Density of sample_hemisphere() per solid angle.
+  virtual double pdf_hemisphere(const Vec3& normal, const Vec3& direction) const;
   /// Mean over the sphere: weighs the environment against other lights.
   virtual Rgb mean_radiance() const = 0;
 };

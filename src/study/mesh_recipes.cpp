@@ -12,6 +12,9 @@ namespace alabaster {
 
 namespace {
 
+/// Half the largest extent of every object, m.
+constexpr double half_extent = 0.05;
+
 /// A shape in mean free paths; scaled to metres afterwards.
 struct StudyShape {
   std::string id;
@@ -21,9 +24,12 @@ struct StudyShape {
   bool back_lit = false;
 };
 
+StudyShape blob_shape(int resolution) {
+  return {"blob", make_blob(0.8 * half_extent, 0.2, resolution), 0.08 * half_extent, Vec3(0, 0.15, 1)};
+}
+
 StudyShape make_shape(const std::string& id) {
-  // Half the largest extent of every object, m.
-  constexpr double size = 0.05;
+  constexpr double size = half_extent;
   const auto number = [&](const char* prefix) { return std::stod(id.substr(std::string(prefix).size())); };
   const Vec3 front(0, 0.15, 1), above(0.25, 0.75, 1);
   const auto starts_with = [&](const char* prefix) { return id.rfind(prefix, 0) == 0; };
@@ -35,7 +41,7 @@ StudyShape make_shape(const std::string& id) {
   if (id == "torus") return {id, make_torus(0.75 * size, 0.25 * size, 144), size / 12, above};
   if (starts_with("ellipsoid_"))
     return {id, make_ellipsoid({size, size / 3, size / 3}, 96), size / (3 * number("ellipsoid_")), front};
-  if (id == "blob") return {id, make_blob(0.8 * size, 0.2, 144), 0.08 * size, front};
+  if (id == "blob") return blob_shape(144);
   if (id == "fold") {
     const double mean_free_path = size / 10;
     return {id,
@@ -76,10 +82,8 @@ Camera framing(const BoundingBox& box, const Vec3& view) {
   return camera;
 }
 
-}  // namespace
-
-SceneRecipe make_mesh_study_recipe(const std::string& id) {
-  StudyShape shape = make_shape(id);
+SceneRecipe recipe_of(StudyShape shape) {
+  const std::string& id = shape.id;
   const BoundingBox box = bounding_box(shape.mesh);
   const Vec3 extent = box.high - box.low;
   const double period = std::max(shape.mean_free_path, std::max({extent.x, extent.y, extent.z}) / 20);
@@ -101,6 +105,22 @@ SceneRecipe make_mesh_study_recipe(const std::string& id) {
   recipe.camera = framing(box, shape.view);
   if (shape.back_lit) recipe.sky.direction = {-0.5, -0.75, -0.3};
   recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "256x256"}, {"spp", "64"}};
+  return recipe;
+}
+
+}  // namespace
+
+SceneRecipe make_mesh_study_recipe(const std::string& id) {
+  return recipe_of(make_shape(id));
+}
+
+SceneRecipe make_blob_recipe(std::size_t triangles, bool textured) {
+  const auto edges = std::max<long>(1, std::lround(std::sqrt(static_cast<double>(triangles) / 12)));
+  SceneRecipe recipe = recipe_of(blob_shape(static_cast<int>(4 * edges)));
+  if (!textured) {
+    recipe.parts.front().texture.reset();
+    recipe.parts.front().colour = Rgb(0.9);
+  }
   return recipe;
 }
 

@@ -41,6 +41,10 @@ struct SceneRecipe {
 /// behind. Throws InputError when no mesh scene has that id.
 SceneRecipe make_mesh_study_recipe(const std::string& id);
 
+/// The study's blob with about that many triangles (12 n^2, n >= 1), for figures over the size of a mesh:
+/// same shape, view and texture at every size; `textured` false: one albedo, 0.9.
+SceneRecipe make_blob_recipe(std::size_t triangles, bool textured);
+
 /// The recipe in memory, prepared for rendering.
 Scene build_scene(SceneRecipe recipe);
 

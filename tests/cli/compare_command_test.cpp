@@ -50,6 +50,32 @@ TEST_CASE("compare prints the agreed keys as JSON on standard output alone") {
   CHECK(nlohmann::json::parse(fitted.out).at("rmse_over_rms").get<double>() == Approx(0).margin(1e-6));
 }
 
+TEST_CASE("compare looks at what both pictures cover with --mask alpha") {
+  const ScratchFolder folder;
+  const std::string a = (folder / "a.exr").string(), b = (folder / "b.exr").string(),
+                    opaque = (folder / "opaque.exr").string();
+  Image first(4, 2, {"R", "G", "B", "A"}), second = first;
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 4; ++x) {
+      first.set_rgb(0, x, y, Rgb(x == 0 ? 100 : 3));
+      second.set_rgb(0, x, y, Rgb(x == 3 ? 100 : 2));
+      first.at(3, x, y) = x == 0 ? 0.4f : 1;   // the first column of A is hardly covered,
+      second.at(3, x, y) = x == 3 ? 0.0f : 1;  // the last of B not at all
+    }
+  write_exr(a, first);
+  write_exr(b, second);
+  write_exr(opaque, picture(1, false));
+  const ProgramRun run = run_program({"compare", a, b, "--json", "--mask", "alpha"});
+  REQUIRE(run.exit_code == 0);
+  const auto json = nlohmann::json::parse(run.out);
+  CHECK(json.at("pixels").get<int>() == 4);
+  CHECK(json.at("mean_a").get<double>() == Approx(3));
+  CHECK(json.at("rmse_over_mean").get<double>() == Approx(0.5));
+  const ProgramRun refused = run_program({"compare", a, opaque, "--mask", "alpha"});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.err.find("no alpha channel") != std::string::npos);
+}
+
 TEST_CASE("compare says what it lacks and refuses what it cannot") {
   const ScratchFolder folder;
   const std::string a = (folder / "a.exr").string(), b = (folder / "b.exr").string(),

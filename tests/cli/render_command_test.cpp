@@ -1,8 +1,11 @@
-#include <signal.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <thread>
 
 #include "cli/tiny_scene.h"
@@ -211,6 +214,26 @@ TEST_CASE("Ctrl-C leaves a valid image of what was done") {
   CHECK(all_finite(file.image));
   CHECK(file.attributes.at("alabaster.complete") == "no");
   CHECK(files_in(folder.path()) == 3);  // no temporaries
+}
+
+TEST_CASE("SIGTERM ends a program that is still loading at once, with one line") {
+  const ScratchFolder folder;
+  // A pipe that nobody writes to: the program waits in the midst of reading its scene.
+  const std::string scene = (folder / "scene.json").string(), out = (folder / "out.exr").string();
+  REQUIRE(mkfifo(scene.c_str(), 0600) == 0);
+  int pipe = -1;
+  ProgramOptions options;
+  options.meanwhile = [&](pid_t process) {
+    pipe = open(scene.c_str(), O_WRONLY);  // returns once the program has opened it
+    kill(process, SIGTERM);
+  };
+  const ProgramRun run = run_program({"render", scene, "-o", out}, options);
+  close(pipe);
+  INFO(run.err);
+  CHECK(run.exit_code == 130);
+  CHECK(run.error_lines() == 1);
+  CHECK(run.err.find("interrupted before the first sample") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(out));
 }
 
 TEST_CASE("a time limit ends a render in order, without asking for samples") {

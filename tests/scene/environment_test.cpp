@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/frame.h"
 #include "core/rng.h"
 #include "image/exr_file.h"
 #include "scene/lights.h"
@@ -85,6 +86,36 @@ TEST_CASE("a lat-long image is drawn by its density") {
   const auto environment = make_latlong_environment(12, 8, spotty_texels(12, 8), 0.7);
   CHECK(p_value(*environment, test) > significance);
   CHECK(test.mass == Approx(1).epsilon(2e-3));
+}
+
+TEST_CASE("directions above a surface are drawn by their density, which leaves out none of them") {
+  const auto check = [](const Environment& environment, const Vec3& normal) {
+    SphereChiSquare test;
+    test.axis = normal;
+    test.quadrature = 30;
+    const double p = test.test(
+        [&](Vec2 u) -> std::optional<Vec3> {
+          const HemisphereSample sample = environment.sample_hemisphere(normal, u);
+          if (!(sample.pdf > 0)) return std::nullopt;
+          REQUIRE(sample.pdf == Approx(environment.pdf_hemisphere(normal, sample.direction)).epsilon(1e-6));
+          return sample.direction;
+        },
+        [&](const Vec3& w) { return environment.pdf_hemisphere(normal, w); });
+    CHECK(p > significance);
+    CHECK(test.mass == Approx(1).epsilon(3e-3));
+    Rng rng(3);
+    for (int i = 0; i < 100; ++i)
+      CHECK(environment.pdf_hemisphere(normal, cosine_direction(normal, {rng.uniform(), rng.uniform()})) > 0);
+  };
+  const Vec3 key = glm::normalize(SkyParameters{}.direction), aside = Frame(key).tangent;
+  check(*make_constant_environment(Rgb(2)), key);
+  check(*make_sky_environment({}), key);
+  check(*make_sky_environment({}), aside);
+  check(*make_sky_environment({}), glm::normalize(aside - 0.5 * key));
+  check(*make_sky_environment({}), -key);
+  check(*make_sky_environment({Rgb(0.1, 0.2, 0.3), Rgb(9, 3, 1), 40, {1, 0.2, 0}}), {0, 1, 0});
+  check(*make_sky_environment({Rgb(0), Rgb(1), 0.5, {0, 0, 1}}), glm::normalize(Vec3(1, 0, 0.3)));
+  check(*make_latlong_environment(12, 8, spotty_texels(12, 8), 0.7), {0, 1, 0});
 }
 
 TEST_CASE("environment samples agree with radiance, pdf and mean") {

@@ -87,6 +87,18 @@ TEST_CASE("recipes carry what a render needs") {
   CHECK_THROWS_WITH(make_recipe("teapot"), Catch::Contains("teapot") && Catch::Contains("demo"));
 }
 
+TEST_CASE("the blob comes at any size, the same but for its triangles") {
+  const SceneRecipe study = make_mesh_study_recipe("blob"), small = make_blob_recipe(3000, true),
+                    plain = make_blob_recipe(3000, false);
+  CHECK(small.parts.front().mesh.triangle_count() == 3072);  // 12 x 16^2
+  CHECK(small.parts.front().texture->width == study.parts.front().texture->width);
+  CHECK(small.parts.front().medium->mean_free_path == study.parts.front().medium->mean_free_path);
+  CHECK(glm::length(small.camera.position - study.camera.position) <
+        0.02 * glm::length(study.camera.position));
+  CHECK(plain.parts.front().mesh.triangle_count() == 3072);
+  CHECK(plain.parts.front().texture == nullptr);
+}
+
 TEST_CASE("the scenes in assets/ are what generate writes, and load") {
   const std::filesystem::path committed = source_dir() / "assets" / "scenes";
   for (const std::string& name : recipe_names()) {
