@@ -60,7 +60,7 @@ enum class PlanarSampling {
 PlanarSampling planar_sampling_from_name(std::string_view name);
 
 /// The SV-BSSRDF models in the flat laboratory: one entry point per sample,
-/// L = T(cos_o) / (pi c) * integral of S_V E dA over the light (DESIGN section 1), the specular term left
+/// L = T(cos_o) / (pi c) * integral of S_V E dA over the light (docs/theory.md), the specular term left
 /// out. The evaluation of S_V is the surface integrator's.
 class PlanarIntegrator final : public Integrator {
  public:

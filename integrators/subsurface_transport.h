@@ -15,7 +15,7 @@ struct SubsurfaceEntry {
   SurfacePoint point;  // normals outwards
   /// Unit, outside, towards where the light comes from; without one the light of the whole hemisphere counts.
   std::optional<Vec3> direction;
-  /// Times the irradiance that enters, E of DESIGN section 1 (W/m^2), or times the radiance that arrives
+  /// Times the irradiance that enters, E of docs/theory.md (W/m^2), or times the radiance that arrives
   /// along `direction`: an estimate of the radiance that leaves, but for the exit's transmission T(cos_o).
   Rgb weight;
 };

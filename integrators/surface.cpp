@@ -32,7 +32,7 @@ double angular_size(const SurfaceOptions& options) {
 
 struct SurfaceIntegrator::Interface {
   double eta = 1.5;
-  double diffuse_transmittance = 1;  // c of DESIGN section 1
+  double diffuse_transmittance = 1;  // c of docs/theory.md
   double transmission(double cosine) const {
     return 1 - fresnel_dielectric(std::clamp(cosine, 0.0, 1.0), eta);
   }

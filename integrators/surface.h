@@ -51,7 +51,7 @@ struct SurfaceOptions {
   bool specular = true;
 };
 
-/// Radiance of a scene by DESIGN section 1: every surface is a dielectric (or metal) interface over a body.
+/// Radiance of a scene by docs/theory.md: every surface is a dielectric (or metal) interface over a body.
 /// The interface mirrors; the body is a BSSRDF where the material has a medium and diffuse where it has not.
 /// Light that crosses a medium without scattering is traced as a path of its own. docs/rendering.md has the
 /// estimators.

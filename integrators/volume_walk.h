@@ -49,7 +49,7 @@ struct VolumeWalkExit {
   int64_t order = 0;   // collisions
 };
 
-/// Random walks through the medium of one closed object with a smooth dielectric boundary (DESIGN section 1,
+/// Random walks through the medium of one closed object with a smooth dielectric boundary (docs/theory.md,
 /// "Volumetric meaning of a 2.5D texture"). Walks run backwards, from just below a surface point to where
 /// light came in; by reciprocity of the boundary and of the phase function that is the same as forwards.
 ///

@@ -52,7 +52,7 @@ class LightSampler {
   Rgb emitted(const Hit& hit, const Vec3& direction) const;
 
   /// Sum of the patch lights' radiances at a surface point: incident from the whole hemisphere, unoccluded. A
-  /// dielectric surface takes in E = pi c L of it (DESIGN section 1).
+  /// dielectric surface takes in E = pi c L of it (docs/theory.md).
   Rgb uniform_radiance(const Vec3& point) const;
 
   bool has_lights() const { return !entries_.empty(); }

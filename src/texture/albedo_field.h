@@ -20,7 +20,7 @@ struct KernelFootprint {
 };
 
 /// The single-scattering albedo over one object's surface: the one function that gives the albedo of a
-/// surface point, used by every model and by the reference (DESIGN section 1). Thread-safe.
+/// surface point, used by every model and by the reference (docs/theory.md). Thread-safe.
 class AlbedoField {
  public:
   virtual ~AlbedoField() = default;

@@ -24,7 +24,7 @@ struct AlbedoTexels {
   std::size_t clamped = 0;  // covered texels with a channel above the largest reflectance
 };
 
-/// alpha of reflectance x factor, texel by texel, in float, before any filtering (DESIGN section 1).
+/// alpha of reflectance x factor, texel by texel, in float, before any filtering (docs/theory.md).
 /// Reflectances are clamped to [0, largest]; NaN becomes 0. Texels of zero weight are left 0 (`weights`
 /// empty: all count).
 AlbedoTexels albedo_texels(const TexelArray& reflectance, const Rgb& factor, std::span<const float> weights,

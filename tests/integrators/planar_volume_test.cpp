@@ -110,7 +110,7 @@ TEST_CASE("what left and what a fully scattering half-space keeps") {
   scene.view.size = Vec2(400);
   const Image image = reference(scene, PlanarEstimator::from_light, 4000);
   const double total = mean_of(image, "R") * 400 * 400 / (diffuse_transmittance(1.5) * scene.light.area());
-  // A(0.9999) = 0.93 (DESIGN section 1); a few per cent leave farther than 200 mean free paths.
+  // A(0.9999) = 0.93 (docs/theory.md); a few per cent leave farther than 200 mean free paths.
   CHECK(total > 0.89);
   CHECK(total < 0.95);
 }

@@ -25,7 +25,7 @@ Scene plane_scene(const Material& material, double size = 40) {
 }  // namespace
 
 TEST_CASE("grey furnace: an unbounded plane of medium shows F + T A") {
-  // DESIGN section 1: under uniform light of radiance 1 an unbounded plane shows F(cos) + T(cos) A(alpha).
+  // docs/theory.md: under uniform light of radiance 1 an unbounded plane shows F(cos) + T(cos) A(alpha).
   for (const double albedo : {0.5, 0.9, 0.99, 1.0}) {
     Scene scene = plane_scene(medium_material(Rgb(albedo), Rgb(0.001)));
     scene.environment = make_constant_environment(Rgb(1));
