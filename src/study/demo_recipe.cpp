@@ -111,7 +111,7 @@ SceneRecipe make_demo_recipe() {
   recipe.sky.key = Rgb(1.1, 1.05, 1.0);
   recipe.sky.exponent = 2;
   recipe.sky.direction = {0.8, 0.6, 0.45};
-  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "720x480"}, {"spp", "96"}};
+  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "720x480"}, {"spp", "192"}};
   return recipe;
 }
 
