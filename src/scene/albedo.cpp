@@ -235,12 +235,24 @@ class AlbedoBuilder {
       std::vector<uint32_t> triangles;
       for (const uint32_t t : all)
         if (scene_.materials[mesh.materials[t]].medium == scene_.materials[m].medium) triangles.push_back(t);
-      if (triangles.empty()) continue;
+      if (triangles.empty() || shows_one_albedo(object, triangles)) continue;
       const auto pyramid = std::make_shared<const SurfacePyramid>(mesh, triangles, *object.albedo,
                                                                   finest_sigma(object, triangles));
       for (const uint32_t t : triangles) pyramids[mesh.materials[t]] = pyramid;
     }
     object.albedo = std::make_unique<SurfaceAlbedo>(mesh, std::move(object.albedo), std::move(pyramids));
+  }
+
+  /// Whether no texture and no vertex colour tells these triangles apart: nothing to average then.
+  bool shows_one_albedo(const SceneObject& object, const std::vector<uint32_t>& triangles) const {
+    const TriangleMesh& mesh = object.mesh;
+    if (has_colours(mesh, triangles)) return false;
+    const auto albedo = [&](uint32_t t) { return object.albedo->at(mesh.surface_point(t, Vec2(1.0 / 3))); };
+    const Rgb first = albedo(triangles.front());
+    return std::all_of(triangles.begin(), triangles.end(), [&](uint32_t t) {
+      const AlbedoSource& source = scene_.materials[mesh.materials[t]].albedo;
+      return !source.texture && !source.strength_texture && albedo(t) == first;
+    });
   }
 
   /// What the finest of the materials' textures can show, within the memory they take.
