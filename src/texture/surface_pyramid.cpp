@@ -39,42 +39,96 @@ struct Splat {
   Vec3f albedo;
 };
 
-// Points of one triangle cut into n x n equal ones.
-int subdivision(const TriangleMesh& mesh, uint32_t triangle, double spacing) {
+// How one triangle is cut: `along` its longest edge and `across`, towards the corner opposite.
+struct Cuts {
+  int along = 1, across = 1;
+  int edge = 0;  // the corner at which the longest edge begins
+
+  // Slivers are cut into strips, or a needle would take the square of its length in points.
+  bool sliver() const { return 2 * across < along; }
+  int pieces(int strip) const {
+    return static_cast<int>(std::ceil(along * (1 - static_cast<double>(strip) / across)));
+  }
+  std::size_t points() const {
+    if (!sliver()) return static_cast<std::size_t>(along) * static_cast<std::size_t>(along);
+    std::size_t sum = 0;
+    for (int strip = 0; strip < across; ++strip) sum += static_cast<std::size_t>(pieces(strip));
+    return sum;
+  }
+};
+
+Cuts cuts_of(const TriangleMesh& mesh, uint32_t triangle, double spacing) {
   const Index3& c = mesh.corners[triangle];
+  Cuts result;
   double longest = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, glm::distance(mesh.positions[c[k]], mesh.positions[c[(k + 1) % 3]]));
-  return static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, 2048.0));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double length = glm::distance(mesh.positions[c[k]], mesh.positions[c[(k + 1) % 3]]);
+    if (length > longest) longest = length, result.edge = static_cast<int>(k);
+  }
+  const auto count = [&](double length) {
+    return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, 2048.0));
+  };
+  result.along = count(longest);
+  result.across = longest > 0 ? count(2 * mesh.area(triangle) / longest) : 1;
+  return result;
 }
 
-void add_triangle(const TriangleMesh& mesh, uint32_t triangle, int n, const AlbedoField& field,
+// Calls visit(barycentric, share of the area) for every piece of a triangle.
+template <class Visit>
+void for_each_piece(const Cuts& cuts, const Visit& visit) {
+  if (!cuts.sliver()) {
+    const int n = cuts.along;
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < 2 * (n - j) - 1; ++i) {
+        // Even ones point as the whole does, odd ones stand on their heads between them.
+        const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+        visit(Vec2(i / 2 + third, j + third) / static_cast<double>(n), 1.0 / n / n);
+      }
+    return;
+  }
+  for (int strip = 0; strip < cuts.across; ++strip) {
+    const double low = static_cast<double>(strip) / cuts.across,
+                 high = static_cast<double>(strip + 1) / cuts.across;
+    const double half_area = (high - low) - 0.5 * (high * high - low * low);
+    const double moment = (high * high - low * low) / 2 - (high * high * high - low * low * low) / 3;
+    const double height = moment / half_area;  // of the strip's centroid
+    const int n = cuts.pieces(strip);
+    for (int i = 0; i < n; ++i) {
+      const double s = (i + 0.5) / n;
+      std::array<double, 3> weight;
+      weight[static_cast<std::size_t>(cuts.edge)] = (1 - height) * (1 - s);
+      weight[static_cast<std::size_t>((cuts.edge + 1) % 3)] = (1 - height) * s;
+      weight[static_cast<std::size_t>((cuts.edge + 2) % 3)] = height;
+      visit(Vec2(weight[1], weight[2]), 2 * half_area / n);
+    }
+  }
+}
+
+void add_triangle(const TriangleMesh& mesh, uint32_t triangle, const Cuts& cuts, const AlbedoField& field,
                   const Vec3& middle, Splat* out) {
-  const auto area = static_cast<float>(mesh.area(triangle) / n / n);
+  const double area = mesh.area(triangle);
   const SurfacePoint corner = mesh.surface_point(triangle, Vec2(0));
   const Vec3 ab = mesh.position(triangle, {1, 0}) - corner.position,
              ac = mesh.position(triangle, {0, 1}) - corner.position;
   const Vec2 uv_ab = mesh.uv(triangle, {1, 0}) - corner.uv, uv_ac = mesh.uv(triangle, {0, 1}) - corner.uv;
   SurfacePoint point = corner;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < 2 * (n - j) - 1; ++i) {
-      // Even ones point as the whole does, odd ones stand on their heads between them.
-      const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-      const Vec2 b = point.barycentric = Vec2(i / 2 + third, j + third) / static_cast<double>(n);
-      point.position = corner.position + b.x * ab + b.y * ac;
-      point.uv = corner.uv + b.x * uv_ab + b.y * uv_ac;
-      const Rgb albedo = field.at(point);
-      *out++ = {Vec3f(point.position - middle), area, Vec3f(albedo.r, albedo.g, albedo.b)};
-    }
+  for_each_piece(cuts, [&](const Vec2& b, double share) {
+    point.barycentric = b;
+    point.position = corner.position + b.x * ab + b.y * ac;
+    point.uv = corner.uv + b.x * uv_ab + b.y * uv_ac;
+    const Rgb albedo = field.at(point);
+    *out++ = {Vec3f(point.position - middle), static_cast<float>(share * area),
+              Vec3f(albedo.r, albedo.g, albedo.b)};
+  });
 }
 
 std::vector<Splat> surface_splats(const TriangleMesh& mesh, std::span<const uint32_t> triangles,
                                   const AlbedoField& field, const Vec3& middle, double spacing) {
   std::vector<std::size_t> first(triangles.size() + 1, 0);
-  std::vector<int> cuts(triangles.size());
+  std::vector<Cuts> cuts(triangles.size());
   for (std::size_t k = 0; k < triangles.size(); ++k) {
-    const int n = cuts[k] = subdivision(mesh, triangles[k], spacing);
-    first[k + 1] = first[k] + static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    cuts[k] = cuts_of(mesh, triangles[k], spacing);
+    first[k + 1] = first[k] + cuts[k].points();
   }
   std::vector<Splat> splats(first.back());
   parallel_for(triangles.size(), 256, [&](std::size_t begin, std::size_t end) {
