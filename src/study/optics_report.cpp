@@ -249,6 +249,8 @@ void write_optics_report(const PathTally& simulation, const TableData& data, con
     targets.push_back(std::move(target));
     truth.push_back(methods.at("table")(targets.back()).density);
   }
+  if (targets.empty())
+    throw InputError(folder.string(), "too few photons for a report; give --photons 500000 or more");
   std::string rows =
       "method,alpha,bins,bins_in_range,mean_error,largest_error,A_error,image_log_ratio,seconds\n";
   std::string summary =

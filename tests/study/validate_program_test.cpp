@@ -18,7 +18,7 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("alabaster validate writes rows, images and a page that a browser shows", "[slow]") {
+TEST_CASE("alabaster validate writes rows, images and a page", "[slow]") {
   ScratchFolder folder;
   const std::string out = (folder / "report").string();
   const std::string command = program().string() +
@@ -43,17 +43,4 @@ TEST_CASE("alabaster validate writes rows, images and a page that a browser show
   const std::string page = read_text(out + "/report.html");
   CHECK(count(page, "http") == 0);  // nothing is fetched
   CHECK(count(page, "<img") == count(page, " alt=\""));
-  if (std::system("command -v chromium >/dev/null 2>&1") != 0) {
-    WARN("SKIPPED: chromium is not installed, the page was not opened");
-    return;
-  }
-  // The slider's pictures are set by the page's script: in the browser's DOM they have a source.
-  const std::string dom = (folder / "dom.html").string();
-  REQUIRE(std::system(("chromium --headless --no-sandbox --disable-gpu --dump-dom file://" + out +
-                       "/report.html > " + dom + " 2>/dev/null")
-                          .c_str()) == 0);
-  const std::string shown = read_text(dom);
-  CHECK(count(shown, "src=\"data:image/png") == count(page, "src=\"data:image/png") + 2);
-  CHECK(count(shown, "inset(0") > 0);
-  CHECK(count(shown, "<option") == 6);  // reference and two models on either side
 }
