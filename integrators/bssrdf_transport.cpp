@@ -25,10 +25,11 @@ PlacementBody placement_body(const Scene& scene, uint32_t object) {
 
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
                                  std::vector<uint8_t> boundary, const std::string& model, Basis basis,
-                                 const std::string& placement)
+                                 const std::string& placement, const std::string& distance)
     : profile_(profile_of(scene.objects[object], medium)),
       lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
-      placement_(make_placement(placement, placement_body(scene, object))) {
+      placement_(make_placement(placement, placement_body(scene, object))),
+      distance_(make_surface_distance(distance, placement_body(scene, object))) {
   const SceneObject& body = scene.objects[object];
   if (basis == Basis::shape) {
     families_ = shapes_for(profile_->g(), profile_->eta());
@@ -36,7 +37,7 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
     shape_ = {families_.get(), &curvature_};
   }
   const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get(),
-                           basis == Basis::shape ? &shape_ : nullptr};
+                           basis == Basis::shape ? &shape_ : nullptr, distance_.get()};
   model_ = make_bssrdf(model, below, {placement_.get()});
   // On one albedo all models are the homogeneous one, which looks nothing up.
   if (dynamic_cast<const ConstantAlbedo*>(body.albedo.get()) != nullptr)

@@ -7,6 +7,7 @@
 #include "bssrdf/bssrdf.h"
 #include "bssrdf/placements.h"
 #include "bssrdf/probe_sampler.h"
+#include "bssrdf/surface_distance.h"
 #include "geometry/curvature.h"
 #include "integrators/subsurface_transport.h"
 #include "scene/scene.h"
@@ -17,11 +18,12 @@ namespace alabaster {
 class BssrdfTransport final : public SubsurfaceTransport {
  public:
   /// `boundary` has one flag per material index: whether the medium lies below its triangles. Throws
-  /// InputError for a model that make_bssrdf() or a placement that make_placement() does not know. The scene
-  /// outlives the transport.
+  /// InputError for a model that make_bssrdf(), a placement that make_placement() or a distance that
+  /// make_surface_distance() does not know. The scene outlives the transport.
   BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
                   const std::string& model, Basis basis = Basis::half_space,
-                  const std::string& placement = std::string(default_placement));
+                  const std::string& placement = std::string(default_placement),
+                  const std::string& distance = std::string(default_distance));
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;
@@ -35,6 +37,7 @@ class BssrdfTransport final : public SubsurfaceTransport {
   ShapeBasis shape_;
   double lobe_;  // 1 / (pi c): what leaves is spread as T(cos_o) / (pi c)
   std::unique_ptr<KernelPlacement> placement_;
+  std::unique_ptr<const Geodesic> distance_;  // null: the chord
   std::unique_ptr<Bssrdf> model_;
   std::unique_ptr<ProbeSampler> probe_;
 };

@@ -135,7 +135,7 @@ std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t 
                                                                        std::vector<uint8_t> boundary) const {
   if (options_.transport == Transport::bssrdf)
     return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
-                                             options_.basis, options_.placement);
+                                             options_.basis, options_.placement, options_.distance);
   if (lights_.has_sizeless())
     throw InputError(scene_.name,
                      "light without size: no walk through a smooth boundary can meet it; give it one with "

@@ -39,6 +39,7 @@ struct SurfaceOptions {
   Basis basis = Basis::half_space;  // of that model
   VolumeWalkOptions walk;           // of Transport::volume and Transport::walk; which albedo is theirs to say
   std::string placement = "chord";  // of its kernel, see make_placement()
+  std::string distance = "chord";   // that its basis is asked for, see make_surface_distance()
   /// Diffuse bounces between surfaces; 0: direct light only.
   int depth = 4;
   bool environment_visible = true;  // to camera rays

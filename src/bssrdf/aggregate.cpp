@@ -73,7 +73,7 @@ Rgb AggregateBssrdf::ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& e
 Rgb AggregateBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
   const PairShape shape = pair(entry, exit);
   const Rgb mean = ellipse_mean(entry, exit, shape.distance);
-  return mean * basis_over_albedo(mean, shape);
+  return mean * basis_over_albedo(mean, basis_pair(shape, entry, exit));
 }
 
 Rgb AggregateBssrdf::typical_albedo(const BssrdfPoint& exit) const {

@@ -7,6 +7,7 @@
 #include "bssrdf/kernel_placement.h"
 #include "bssrdf/pair_shape.h"
 #include "core/rgb.h"
+#include "geometry/geodesic.h"
 #include "geometry/surface_point.h"
 #include "optics/profile_table.h"
 #include "texture/albedo_field.h"
@@ -27,12 +28,13 @@ struct ShapeBasis {
 };
 
 /// What light meets below one surface: the homogeneous basis in scene units and the albedo over the surface.
-/// Without `shape` the basis is that of a half-space.
+/// Without `shape` the basis is that of a half-space, without `distance` the d it is asked for is the chord.
 struct BssrdfMedium {
   const ProfileTable* profile = nullptr;
   Rgb sigma_t;                          // 1/m
   const AlbedoField* albedo = nullptr;  // of the object
   const ShapeBasis* shape = nullptr;
+  const Geodesic* distance = nullptr;  // the chord also where this finds no way
 
   BssrdfPoint point(const SurfacePoint& surface) const {
     return {surface, albedo->at(surface), shape_at(surface.triangle, surface.barycentric)};
@@ -79,6 +81,12 @@ class Bssrdf {
  protected:
   PairShape pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
     return pair(entry.surface.position, entry.shape, exit.surface.position, exit.shape);
+  }
+  /// The pair as the basis is to see it, its chord replaced by the medium's distance.
+  PairShape basis_pair(PairShape pair, const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+    if (medium_.distance != nullptr)
+      pair.distance = medium_.distance->distance(entry.surface, exit.surface).value_or(pair.distance);
+    return pair;
   }
 
   BssrdfMedium medium_;

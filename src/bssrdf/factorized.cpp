@@ -5,7 +5,7 @@
 namespace alabaster {
 
 Rgb FactorizedBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const PairShape shape = pair(entry, exit);
+  const PairShape shape = basis_pair(pair(entry, exit), entry, exit);
   const Rgb at_exit = exit.albedo * basis_over_albedo(exit.albedo, shape);
   if (entry.albedo == exit.albedo) return at_exit;
   const Rgb product = at_exit * entry.albedo * basis_over_albedo(entry.albedo, shape);

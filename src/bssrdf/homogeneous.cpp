@@ -3,7 +3,7 @@
 namespace alabaster {
 
 Rgb HomogeneousBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  return exit.albedo * basis_over_albedo(exit.albedo, pair(entry, exit));
+  return exit.albedo * basis_over_albedo(exit.albedo, basis_pair(pair(entry, exit), entry, exit));
 }
 
 }  // namespace alabaster

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bssrdf/placements.h"
+#include "bssrdf/surface_distance.h"
 #include "core/error.h"
 #include "integrators/render.h"
 
@@ -38,13 +38,14 @@ std::vector<std::string> split(const std::string& name) {
 }
 
 MeshMethod bssrdf_method(const std::string& model, const std::string& basis, const std::string& variant,
-                         const std::string& placement = "") {
+                         const std::string& placement = "", const std::string& distance = "") {
   MeshMethod method;
   if (!placement.empty()) method.placement = placement;
+  if (!distance.empty()) method.distance = distance;
   method.basis = basis;
   method.model = variant.empty() ? model : model + ":" + variant;
   method.name = model + "+" + basis + (variant.empty() ? "" : "+" + variant) +
-                (placement.empty() ? "" : "+" + placement);
+                (placement.empty() ? "" : "+" + placement) + (distance.empty() ? "" : "+" + distance);
   return method;
 }
 
@@ -65,6 +66,7 @@ SurfaceOptions MeshMethod::apply(SurfaceOptions options) const {
     options.model = model;
     options.basis = basis_value();
     options.placement = placement;
+    options.distance = distance;
   }
   return options;
 }
@@ -85,16 +87,19 @@ MeshMethod parse_mesh_method(const std::string& name) {
                        joined(mesh_bases()));
   }
   const bool composite = parts[0] == "composite", placed = composite || parts[0] == "aggregate";
-  std::string variant, placement;
+  std::string variant, placement, distance;
   if (next < parts.size() && composite && contains({"symmetric", "order1"}, parts[next]))
     variant = parts[next++];
   if (next < parts.size() && placed && contains(placement_names(), parts[next])) placement = parts[next++];
+  if (next < parts.size() && contains(distance_names(), parts[next])) distance = parts[next++];
   if (next < parts.size())
     throw InputError("method '" + name +
                      "': there is no such variant; composite takes symmetric and order1, " +
-                     "composite and aggregate a placement: " + joined(placement_names()));
+                     "composite and aggregate a placement: " + joined(placement_names()) +
+                     "; every model a distance: " + joined(distance_names()));
   if (placement == default_placement) placement.clear();
-  return bssrdf_method(parts[0], basis, variant, placement);
+  if (distance == default_distance) distance.clear();
+  return bssrdf_method(parts[0], basis, variant, placement, distance);
 }
 
 std::vector<MeshMethod> standard_mesh_methods() {

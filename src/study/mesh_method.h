@@ -10,14 +10,16 @@
 namespace alabaster {
 
 /// A way to render meshes, as charts and results.json name it: MODEL+BASIS[+VARIANT][+PLACEMENT]
-/// (composite+half-space, composite+half-space+symmetric, composite+shape+straightest), `walk` (random walks
-/// with the exit's albedo) or `volume`. The default placement is not named.
+/// [+DISTANCE] (composite+half-space, composite+half-space+symmetric, composite+shape+straightest,
+/// homogeneous+shape+geodesic), `walk` (random walks with the exit's albedo) or `volume`. Neither the default
+/// placement nor the chord is named.
 struct MeshMethod {
   std::string name;  // in full
   Transport transport = Transport::bssrdf;
   std::string model;  // of Transport::bssrdf, for make_bssrdf()
   std::string basis;
   std::string placement = "chord";  // of its kernel, for make_placement()
+  std::string distance = "chord";   // of its basis, for make_surface_distance()
 
   Basis basis_value() const;
   SurfaceOptions apply(SurfaceOptions options) const;

@@ -37,10 +37,15 @@ TEST_CASE("names of mesh methods are read and written back") {
   CHECK(parse_mesh_method("composite+shape+symmetric+arc").placement == "arc");
   CHECK(parse_mesh_method("aggregate+half-space+straightest").name == "aggregate+half-space+straightest");
   CHECK(parse_mesh_method("composite+half-space+chord").name == "composite+half-space");
+  CHECK(parse_mesh_method("composite+half-space+chord+chord").name == "composite+half-space");
+  CHECK(parse_mesh_method("composite+shape+order1+arc+geodesic").name ==
+        "composite+shape+order1+arc+geodesic");
+  CHECK(parse_mesh_method("homogeneous+shape+normal-corrected").distance == "normal-corrected");
   CHECK(parse_mesh_method("walk").transport == Transport::walk);
   CHECK(parse_mesh_method("volume").transport == Transport::volume);
-  for (const char* wrong : {"", "walk+half-space", "composite+", "composite+sphere",
-                            "factorized+half-space+order1", "composite+half-space+order1+order1"})
+  for (const char* wrong :
+       {"", "walk+half-space", "composite+", "composite+sphere", "factorized+half-space+order1",
+        "factorized+half-space+arc", "walk+geodesic", "composite+half-space+order1+order1"})
     CHECK_THROWS_AS(parse_mesh_method(wrong), InputError);
   for (const MeshMethod& m : standard_mesh_methods()) CHECK(parse_mesh_method(m.name).name == m.name);
   CHECK(standard_mesh_methods().size() == 4 * mesh_bases().size() + 1);
