@@ -5,6 +5,7 @@
 #include "cli/study_options.h"
 #include "core/parallel.h"
 #include "study/geodesic_chart.h"
+#include "study/pyramid_chart.h"
 #include "study/speed_accuracy.h"
 
 namespace alabaster {
@@ -17,18 +18,21 @@ struct ChartSettings {
   std::string what = "speed", budgets = "quick";
 };
 
-void run_geodesic(const ChartSettings& settings) {
+/// Studies without pictures: `chart` writes what it measured into the folder.
+template <class Options>
+void run_study(const ChartSettings& settings, void (*chart)(const Options&)) {
   const double start = wall_seconds();
-  GeodesicChartOptions options;
+  Options options;
   options.output = settings.study.output;
   options.seed = settings.study.seed;
-  chart_geodesics(options);
+  chart(options);
   finish_study(settings.study.output + "/chart.html", wall_seconds() - start);
 }
 
 void run(ChartSettings& settings) {
   set_thread_count(settings.study.threads);
-  if (settings.what == "geodesic") return run_geodesic(settings);
+  if (settings.what == "geodesic") return run_study(settings, &chart_geodesics);
+  if (settings.what == "pyramids") return run_study(settings, &chart_pyramids);
   ChartOptions& options = settings.options;
   options.quality = quality_from_name(settings.budgets);
   options.output = settings.study.output;
@@ -48,8 +52,9 @@ void add_chart_command(CLI::App& app) {
       app.add_subcommand("chart", "Chart every method's error against the reference over its time");
   command
       ->add_option("--what", settings->what,
-                   "speed: every method's error over CPU time; geodesic: distances over surfaces")
-      ->check(CLI::IsMember({"speed", "geodesic"}))
+                   "speed: every method's error over CPU time; geodesic: distances over surfaces; "
+                   "pyramids: averages of albedo on seamed surfaces")
+      ->check(CLI::IsMember({"speed", "geodesic", "pyramids"}))
       ->capture_default_str();
   command
       ->add_option("--scenes", settings->options.scenes,

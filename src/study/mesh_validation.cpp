@@ -19,7 +19,7 @@ bool known_to_a_tenth(const Rgb& value, const Rgb& variance) {
 
 /// The method on one albedo per object. Models that differ by their treatment of texture alone are one there.
 std::string flat_key(const MeshMethod& method) {
-  return method.transport == Transport::bssrdf ? "bssrdf " + method.basis : "walk";
+  return method.transport == Transport::bssrdf ? "bssrdf " + method.basis + " " + method.distance : "walk";
 }
 
 void add_causes(const MeshMethod& method, const Image& truth, const Image& flat_truth,

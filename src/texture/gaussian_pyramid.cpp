@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 
 #include "core/parallel.h"
@@ -12,10 +13,6 @@ namespace alabaster {
 
 namespace {
 
-// One texel, and two, that the compiler keeps in one register (GCC and Clang vector extension).
-using Float4 = float __attribute__((vector_size(16)));
-using Float8 = float __attribute__((vector_size(32)));
-
 // Spacings: level 1 has 2 texels per sample, further ones sqrt(2.5) times more each, so that all of them
 // together are 0.42 of the texture. Every sample averages a Gaussian of 0.4 spacings squared, and the kernel
 // that reads a level has between 0.4 and 1.6: the alias of the pair is at most exp(-0.4 pi^2) = 1.9 % of a
@@ -23,6 +20,8 @@ using Float8 = float __attribute__((vector_size(32)));
 constexpr double first_spacing = 2, spacing_ratio = 1.58113883008419;
 constexpr double level_blur = 0.4, narrowest_kernel = 0.4, widest_kernel = 3.2;
 constexpr int margin = 5;
+constexpr int most_taps = 10;
+constexpr std::size_t tile_side = 8;
 // Sums of weights below this are too far from any covered texel to be meant.
 constexpr float least_weight = 1e-6f;
 // Kernels at least this wide are bells; narrower ones, at the finest level only, are its own reconstruction
@@ -113,9 +112,10 @@ Float4 blurred_box_weights(float fraction, float blur) {
   return Float4{edges[0], edges[1] - edges[0], edges[2] - edges[1], 1 - edges[2]};
 }
 
-// The weighted sum over taps x taps texels, two neighbours at a time.
-template <int taps>
-Float4 gather_taps(const Vec4f* corner, std::size_t stride, const Weights& u_weights,
+// The weighted sum over taps x taps texels, two neighbours at a time: of codes times weights and weights, or
+// of codes and largest_code where all weights are that.
+template <int taps, bool everywhere>
+Float4 gather_taps(const PackedTexel* corner, std::size_t stride, const Weights& u_weights,
                    const Weights& v_weights) {
   Float8 pair_weights[taps / 2];
   for (int i = 0; i < taps / 2; ++i) {
@@ -126,15 +126,33 @@ Float4 gather_taps(const Vec4f* corner, std::size_t stride, const Weights& u_wei
   for (int j = 0; j < taps; ++j, corner += stride) {
     Float8 row{};
     for (int i = 0; i < taps / 2; ++i) {
-      Float8 pair;
-      std::memcpy(&pair, corner + std::ptrdiff_t{2} * i, sizeof pair);
-      row += pair * pair_weights[i];
+      const Float8 pair = load_pair(corner + std::ptrdiff_t{2} * i);
+      row += everywhere ? pair * pair_weights[i] : weighted_pair(pair, pair_weights[i]);
     }
     sum += row * v_weights[j];
   }
   Float4 halves[2];
   std::memcpy(halves, &sum, sizeof halves);
   return halves[0] + halves[1];
+}
+
+// The same from `first` on, the sample below the place along either axis, times `scale`.
+template <int taps, class Level>
+Vec4f sum_of_taps(const Level& level, const int (&first)[2], const Weights (&weights)[2], float scale) {
+  const int x = first[0] - taps / 2 + 1, y = first[1] - taps / 2 + 1;
+  const PackedTexel* corner = level.sample(x, y);
+  Float4 sum;
+  if (level.is_full(x, y)) {
+    const float weight = scale * level.weight_unit * largest_code;
+    sum = gather_taps<taps, true>(corner, level.stride, weights[0], weights[1]) *
+          Float4{weight, weight, weight, scale * level.weight_unit};
+  } else {
+    sum =
+        gather_taps<taps, false>(corner, level.stride, weights[0], weights[1]) * (scale * level.weight_unit);
+  }
+  Vec4f result;
+  std::memcpy(&result, &sum, sizeof result);
+  return result;
 }
 
 // A texture coordinate brought into [0, 1]; NaN becomes 0.
@@ -195,15 +213,13 @@ int coarser_extent(int finest, int current, double spacing, Wrap wrap) {
 
 }  // namespace
 
-const Vec4f* GaussianPyramid::Level::sample(int x, int y) const {
-  return texels.data() + static_cast<std::size_t>(y + margin) * stride + static_cast<std::size_t>(x + margin);
-}
-Vec4f* GaussianPyramid::Level::sample(int x, int y) {
-  return texels.data() + static_cast<std::size_t>(y + margin) * stride + static_cast<std::size_t>(x + margin);
+template <class Texel>
+std::size_t GaussianPyramid::Samples<Texel>::index(int x, int y) const {
+  return static_cast<std::size_t>(y + margin) * stride + static_cast<std::size_t>(x + margin);
 }
 
-GaussianPyramid::Level GaussianPyramid::allocate(int width, int height) {
-  Level level;
+GaussianPyramid::Draft GaussianPyramid::allocate(int width, int height) {
+  Draft level;
   level.extent[0] = width;
   level.extent[1] = height;
   level.stride = static_cast<std::size_t>(width + 2 * margin);
@@ -211,7 +227,7 @@ GaussianPyramid::Level GaussianPyramid::allocate(int width, int height) {
   return level;
 }
 
-void GaussianPyramid::fill_margin(Level& level) const {
+void GaussianPyramid::fill_margin(Draft& level) const {
   const int w = level.extent[0], h = level.extent[1];
   const Range u = computed_range(w, wrap_[0]), v = computed_range(h, wrap_[1]);
   for (int y = -margin; y < h + margin; ++y)
@@ -228,10 +244,11 @@ GaussianPyramid::GaussianPyramid(const TexelArray& texels, std::vector<float> co
   assert(texels.width > 0 && texels.height > 0);
   assert(coverage.empty() || coverage.size() == texels.texels.size());
   if (std::none_of(coverage.begin(), coverage.end(), [](float c) { return c > 0; })) coverage.clear();
-  Level finest = allocate(texels.width, texels.height);
+  Draft finest = allocate(texels.width, texels.height);
   for (double& samples : finest.samples_per_texel) samples = 1;
   Vec4 sum(0);
   max_ = Rgb(-std::numeric_limits<double>::infinity());
+  Rgb least(std::numeric_limits<double>::infinity());
   for (int y = 0, i = 0; y < texels.height; ++y)
     for (int x = 0; x < texels.width; ++x, ++i) {
       const float weight = coverage.empty() ? 1.0f : coverage[static_cast<std::size_t>(i)];
@@ -240,17 +257,65 @@ GaussianPyramid::GaussianPyramid(const TexelArray& texels, std::vector<float> co
       const Vec4f weighted(texel.x * weight, texel.y * weight, texel.z * weight, weight);
       *finest.sample(x, y) = weighted;
       sum += Vec4(weighted);
-      for (int c = 0; c < 3; ++c) max_[c] = std::max(max_[c], static_cast<double>(texel[c]));
+      for (int c = 0; c < 3; ++c) {
+        max_[c] = std::max(max_[c], static_cast<double>(texel[c]));
+        least[c] = std::min(least[c], static_cast<double>(texel[c]));
+      }
     }
-  mean_ = Vec4f(sum / (static_cast<double>(texels.width) * texels.height));
+  range_ = PackedRange(least, max_);
+  const Vec4f mean(sum / (static_cast<double>(texels.width) * texels.height));
+  mean_ = Vec4f(range_.codes(mean) * mean.w, mean.w);
   fill_margin(finest);
-  levels_.push_back(std::move(finest));
-  add_coarser_levels();
+  add_coarser_levels(std::move(finest));
 }
 
-GaussianPyramid::Level GaussianPyramid::coarser(const Level& level, int width, int height) const {
+void GaussianPyramid::add(const Draft& draft) {
+  Level level;
+  std::copy_n(draft.extent, 2, level.extent);
+  std::copy_n(draft.samples_per_texel, 2, level.samples_per_texel);
+  std::copy_n(draft.blur, 2, level.blur);
+  level.stride = draft.stride;
+  level.texels.resize(draft.texels.size());
+  float largest = 0;
+  for (const Vec4f& texel : draft.texels) largest = std::max(largest, texel.w);
+  level.weight_unit = largest / largest_code;
+  parallel_for(draft.texels.size(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      level.texels[i] = range_.pack(draft.texels[i], largest_code / largest);
+  });
+  find_full_tiles(level);
+  levels_.push_back(std::move(level));
+}
+
+bool GaussianPyramid::Level::is_full(int x, int y) const {
+  return full[static_cast<std::size_t>(y + margin) / tile_side * tiles_per_row +
+              static_cast<std::size_t>(x + margin) / tile_side] != 0;
+}
+
+void GaussianPyramid::find_full_tiles(Level& level) {
+  const std::size_t width = level.stride, height = level.texels.size() / width;
+  level.tiles_per_row = (width + tile_side - 1) / tile_side;
+  const std::size_t rows = (height + tile_side - 1) / tile_side;
+  level.full.assign(level.tiles_per_row * rows, 0);
+  parallel_for(level.full.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      const std::size_t x0 = tile % level.tiles_per_row * tile_side,
+                        y0 = tile / level.tiles_per_row * tile_side;
+      // Beyond the last sample nothing is ever read.
+      const std::size_t x1 = std::min(x0 + tile_side - 1 + most_taps, width),
+                        y1 = std::min(y0 + tile_side - 1 + most_taps, height);
+      bool all = true;
+      for (std::size_t y = y0; y < y1 && all; ++y)
+        for (std::size_t x = x0; x < x1 && all; ++x)
+          all = level.texels[y * width + x][3] == std::numeric_limits<uint16_t>::max();
+      level.full[tile] = all ? 1 : 0;
+    }
+  });
+}
+
+GaussianPyramid::Draft GaussianPyramid::coarser(const Draft& level, int width, int height) const {
   const int extent[2] = {width, height};
-  Level result = allocate(width, height);
+  Draft result = allocate(width, height);
   double variance[2];  // of the Gaussian that leads from the finer level to this one, in its spacings
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double spacing = static_cast<double>(level.extent[axis]) / extent[axis];
@@ -267,7 +332,7 @@ GaussianPyramid::Level GaussianPyramid::coarser(const Level& level, int width, i
   };
   const Range u = computed_range(width, wrap_[0]), v = computed_range(height, wrap_[1]);
   const Range finer_v = computed_range(level.extent[1], wrap_[1]);
-  Level narrow = allocate(width, level.extent[1]);  // filtered along u alone
+  Draft narrow = allocate(width, level.extent[1]);  // filtered along u alone
   parallel_for(static_cast<std::size_t>(u.end - u.begin), 8, [&](std::size_t begin, std::size_t end) {
     for (int x = u.begin + static_cast<int>(begin); x < u.begin + static_cast<int>(end); ++x)
       filter_axis(0, x, [&](int i, float weight) {
@@ -285,22 +350,23 @@ GaussianPyramid::Level GaussianPyramid::coarser(const Level& level, int width, i
   return result;
 }
 
-void GaussianPyramid::add_coarser_levels() {
+void GaussianPyramid::add_coarser_levels(Draft last) {
+  add(last);
   double spacing = first_spacing;
   const int longest = std::max(width(), height());
   for (; spacing < 2.0 * longest; spacing *= spacing_ratio) {
-    const Level& last = levels_.back();
     const int w = coarser_extent(width(), last.extent[0], spacing, wrap_[0]);
     const int h = coarser_extent(height(), last.extent[1], spacing, wrap_[1]);
     if (w == last.extent[0] && h == last.extent[1]) continue;
-    Level next = coarser(last, w, h);
+    Draft next = coarser(last, w, h);
     double from = 0;
     for (std::size_t axis = 0; axis < 2; ++axis)
       if (next.extent[axis] != last.extent[axis])
         from = std::max(from, (level_blur + narrowest_kernel) /
                                   (next.samples_per_texel[axis] * next.samples_per_texel[axis]));
     level_from_.push_back(from);
-    levels_.push_back(std::move(next));
+    add(next);
+    last = std::move(next);
   }
   const Level& coarsest = levels_.back();
   for (std::size_t axis = 0; axis < 2; ++axis)
@@ -310,12 +376,13 @@ void GaussianPyramid::add_coarser_levels() {
 }
 
 Rgb GaussianPyramid::mean() const {
-  return Rgb(mean_.x, mean_.y, mean_.z) / mean_.w;
+  return range_.mean(mean_);
 }
 
 std::size_t GaussianPyramid::memory_bytes() const {
   std::size_t bytes = sizeof *this;
-  for (const Level& level : levels_) bytes += sizeof level + level.texels.size() * sizeof(Vec4f);
+  for (const Level& level : levels_)
+    bytes += sizeof level + level.texels.size() * sizeof(PackedTexel) + level.full.size();
   return bytes;
 }
 
@@ -336,23 +403,22 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
     kernel[axis] = static_cast<float>(std::min(total * scale * scale - level.blur[axis], widest_kernel));
   }
   Weights weights[2];
-  float scale = 1, sums[2];  // of the result, for weights that are not normalised
+  float sums[2];
   const auto gather_bell = [&]<int taps>(std::integral_constant<int, taps>) {
     bell_weights<taps>(fraction, kernel, weights, sums);
-    scale = 1 / (sums[0] * sums[1]);
-    return gather_taps<taps>(level.sample(first[0] - taps / 2 + 1, first[1] - taps / 2 + 1), level.stride,
-                             weights[0], weights[1]);
+    return sum_of_taps<taps>(level, first, weights, 1 / (sums[0] * sums[1]));
   };
   const float widest = std::max(kernel[0], kernel[1]);
-  Float4 sum;
+  Vec4f result;
   if (widest > 1.8f) {
-    sum = gather_bell(std::integral_constant<int, 10>());
+    result = gather_bell(std::integral_constant<int, 10>());
   } else if (widest > 0.95f) {
-    sum = gather_bell(std::integral_constant<int, 8>());
+    result = gather_bell(std::integral_constant<int, 8>());
   } else if (widest > 0.45f) {
-    sum = gather_bell(std::integral_constant<int, 6>());
+    result = gather_bell(std::integral_constant<int, 6>());
   } else {
     const auto own = static_cast<float>(reconstruction_variance(filter_));
+    float scale = 1;  // for weights that are not normalised
     if (widest >= narrowest_bell) bell_weights<4>(fraction, kernel, weights, sums);
     for (std::size_t axis = 0; axis < 2; ++axis) {
       if (kernel[axis] >= narrowest_bell)
@@ -362,11 +428,8 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
                                      ? blurred_tent_weights(fraction[axis], kernel[axis] - own)
                                      : blurred_box_weights(fraction[axis], kernel[axis] - own);
     }
-    sum = gather_taps<4>(level.sample(first[0] - 1, first[1] - 1), level.stride, weights[0], weights[1]);
+    result = sum_of_taps<4>(level, first, weights, scale);
   }
-  sum *= scale;
-  Vec4f result;
-  std::memcpy(&result, &sum, sizeof result);
   if (total > mean_from_) {
     const auto share = static_cast<float>(std::min(total / mean_from_ - 1, 1.0));
     result = (1 - share) * result + share * mean_;
@@ -375,15 +438,11 @@ Vec4f GaussianPyramid::gather(Vec2 st, double variance) const {
 }
 
 Rgb GaussianPyramid::resolve(Vec2 st, double variance, const Vec4f& sum) const {
-  if (sum.w > least_weight) {
-    const float inverse = 1 / sum.w;
-    return Rgb(sum.x * inverse, sum.y * inverse, sum.z * inverse);
-  }
+  if (sum.w > least_weight) return range_.mean(sum);
   // No covered texel near: widen until there is one.
   const double whole = 16.0 * std::max(width(), height()) * std::max(width(), height());
   for (double wider = std::max(1.0, 4 * variance); wider < whole; wider *= 4)
-    if (const Vec4f found = gather(st, wider); found.w > least_weight)
-      return Rgb(found.x, found.y, found.z) / found.w;
+    if (const Vec4f found = gather(st, wider); found.w > least_weight) return range_.mean(found);
   return mean();
 }
 
@@ -399,10 +458,7 @@ Rgb GaussianPyramid::at(Vec2 st) const {
     const float upper = filter_ == Filter::linear ? fraction : (fraction < 0.5f ? 0.0f : 1.0f);
     weights[axis].block[0] = Float4{1 - upper, upper, 0, 0};
   }
-  const Float4 sum = gather_taps<2>(level.sample(first[0], first[1]), level.stride, weights[0], weights[1]);
-  Vec4f result;
-  std::memcpy(&result, &sum, sizeof result);
-  return resolve(st, 0, result);
+  return resolve(st, 0, sum_of_taps<2>(level, first, weights, 1));
 }
 
 Rgb GaussianPyramid::filtered(Vec2 st, double sigma_texels) const {

@@ -3,12 +3,14 @@
 #include <memory>
 #include <vector>
 
+#include "texture/packed_texel.h"
 #include "texture/texture.h"
 
 namespace alabaster {
 
 /// A texture and its Gaussian-filtered, ever coarser versions, each texel weighted by how much of it the
-/// surface covers: no texel outside a chart is ever averaged. Level 0 is the texture itself.
+/// surface covers: no texel outside a chart is ever averaged. Level 0 is the texture itself. Held in 16 bits
+/// a channel between the least and the largest covered value: off by at most 8e-6 of that range.
 ///
 /// A lookup reads one level only, through a kernel of 4 x 4 to 10 x 10 taps whose width makes up for what the
 /// level's own blur lacks; results lie in the convex hull of the covered texels, and a constant texture comes
@@ -39,20 +41,35 @@ class GaussianPyramid {
   std::size_t memory_bytes() const;
 
  private:
-  struct Level {
+  template <class Texel>
+  struct Samples {
     int extent[2] = {0, 0};         // samples along u and v
     double samples_per_texel[2]{};  // extent over level 0's
     double blur[2]{};               // variance of what a sample averages, in its own spacings squared
     std::size_t stride = 0;         // padded row
-    std::vector<Vec4f> texels;      // rgb * weight, weight; with a margin that continues the wrap
+    std::vector<Texel> texels;      // with a margin that continues the wrap
 
-    const Vec4f* sample(int x, int y) const;
-    Vec4f* sample(int x, int y);
+    const Texel* sample(int x, int y) const { return texels.data() + index(x, y); }
+    Texel* sample(int x, int y) { return texels.data() + index(x, y); }
+
+    std::size_t index(int x, int y) const;
   };
-  static Level allocate(int width, int height);
-  void fill_margin(Level& level) const;
-  Level coarser(const Level& level, int width, int height) const;
-  void add_coarser_levels();
+  using Draft = Samples<Vec4f>;  // rgb * weight, weight
+  struct Level : Samples<PackedTexel> {
+    float weight_unit = 1;  // of a code
+    /// By tile: whether all weights are the largest that a kernel may meet whose first tap lies in it, so
+    /// that it need not read them.
+    std::vector<uint8_t> full;
+    std::size_t tiles_per_row = 0;
+
+    bool is_full(int x, int y) const;
+  };
+  static Draft allocate(int width, int height);
+  void fill_margin(Draft& level) const;
+  Draft coarser(const Draft& level, int width, int height) const;
+  void add(const Draft& level);
+  static void find_full_tiles(Level& level);
+  void add_coarser_levels(Draft finest);
 
   Vec4f gather(Vec2 st, double variance) const;
   Vec4f gather_along(Vec2 st, Vec2 axis, double narrow, double extra) const;
@@ -63,7 +80,8 @@ class GaussianPyramid {
   Wrap wrap_[2];
   Filter filter_;
   double mean_from_ = 0;  // total variance from which the mean is blended in
-  Vec4f mean_{0};         // premultiplied
+  PackedRange range_;
+  Vec4f mean_{0};  // codes * weight, weight
   Rgb max_;
 };
 

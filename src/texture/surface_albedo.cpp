@@ -12,8 +12,10 @@ namespace {
 constexpr double least_texels = 1.5;
 // Nodes of all levels per squared finest spacing of surface (measured: docs/pyramids.md), and how many may
 // always be had.
-constexpr double nodes_per_area = 48;
+constexpr double nodes_per_area = 50;
 constexpr std::size_t free_nodes = 1 << 18;
+// The field answers up to this share of the finest variance of the pyramid.
+constexpr double field_until = 0.5;
 
 }  // namespace
 
@@ -23,8 +25,7 @@ SurfaceAlbedo::SurfaceAlbedo(const TriangleMesh& mesh, std::unique_ptr<AlbedoFie
   for (const uint16_t material : mesh.materials) {
     assert(material < pyramids_.size());
     const SurfacePyramid* pyramid = pyramids_[material].get();
-    if (pyramid != nullptr)
-      by_position_from_ = std::max(by_position_from_, std::sqrt(2.0) * pyramid->finest_sigma());
+    if (pyramid != nullptr) by_position_from_ = std::max(by_position_from_, pyramid->finest_sigma());
   }
   if (by_position_from_ == 0) by_position_from_ = std::numeric_limits<double>::infinity();
 }
@@ -33,11 +34,13 @@ Rgb SurfaceAlbedo::filtered(const KernelFootprint& footprint) const {
   const SurfacePyramid* pyramid = pyramids_[mesh_.materials[footprint.triangle]].get();
   if (pyramid == nullptr) return field_->filtered(footprint);
   const double finest = pyramid->finest_sigma();
-  const double share = footprint.sigma * footprint.sigma / (finest * finest) - 1;
-  if (!(share > 0)) return field_->filtered(footprint);
-  const Rgb in_space = pyramid->filtered(footprint.position, footprint.sigma);
-  if (share >= 1) return in_space;
-  return share * in_space + (1 - share) * field_->filtered(footprint);
+  const double variance = footprint.sigma * footprint.sigma / (finest * finest);
+  if (variance >= 1) return pyramid->filtered(footprint.position, footprint.sigma);
+  if (!(variance > field_until)) return field_->filtered(footprint);
+  KernelFootprint narrow = footprint;
+  narrow.sigma = std::sqrt(field_until) * finest;
+  const double share = (variance - field_until) / (1 - field_until);
+  return share * pyramid->filtered(footprint.position, finest) + (1 - share) * field_->filtered(narrow);
 }
 
 double finest_pyramid_sigma(const TriangleMesh& mesh, std::span<const uint32_t> triangles, double texel_size,
@@ -46,7 +49,7 @@ double finest_pyramid_sigma(const TriangleMesh& mesh, std::span<const uint32_t> 
   for (const uint32_t t : triangles) area += mesh.area(t);
   const auto nodes = static_cast<double>(std::max(texels, free_nodes));
   const double affordable = std::sqrt(nodes_per_area * area / nodes);
-  return std::max(least_texels * texel_size, std::sqrt(7.0 / 6) * affordable);
+  return std::max(least_texels * texel_size, SurfacePyramid::sigma_of_spacing(affordable));
 }
 
 double texel_size(const TriangleMesh& mesh, const UvAtlas& atlas, std::span<const uint32_t> triangles,

@@ -13,8 +13,8 @@ namespace alabaster {
 
 /// A field over UVs or vertices that leaves wide Gaussians to a pyramid over space: what lies across a seam,
 /// in another chart or of another material of the same medium counts where it lies in the world. Narrow
-/// Gaussians, which resolve texels, are the field's own; between one and two times the pyramid's finest
-/// variance both are mixed.
+/// Gaussians, which resolve texels, are the field's own; from half the pyramid's finest variance to all of it
+/// both are mixed: the field at the former and the pyramid at the latter, whatever lies between.
 class SurfaceAlbedo final : public AlbedoField {
  public:
   /// One pyramid per material index; materials that share a medium share one. Null: the field alone answers.

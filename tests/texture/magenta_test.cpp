@@ -1,6 +1,7 @@
 // Models whose atlases are pure magenta outside the charts: whatever an albedo field is asked, no magenta may
 // show. Wanted reflectance is turned into albedo by the identity here, so that colours stay recognisable.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +11,8 @@
 #include "scene/scene_file.h"
 #include "support/paths.h"
 #include "texture/material_map.h"
+#include "texture/seam_gutters.h"
+#include "texture/surface_albedo.h"
 
 using namespace alabaster;
 
@@ -28,6 +31,20 @@ GreenRange green_range(const TexelArray& texels, const Coverage& coverage) {
     range.high = std::max(range.high, static_cast<double>(texels.texels[i].y));
   }
   return range;
+}
+
+/// With gutters filled and the pyramid over space.
+SurfaceAlbedo as_in_scenes(const TriangleMesh& mesh, const UvAtlas& atlas,
+                           const std::vector<uint32_t>& triangles, TexelArray texels, Coverage coverage,
+                           const TextureMapping& mapping) {
+  fill_gutters(mesh, triangles, mapping, texels, coverage);
+  auto field = std::make_unique<TextureAlbedo>(mesh, triangles, texels, coverage, mapping);
+  const double size = texel_size(mesh, atlas, triangles, mapping, texels.width, texels.height);
+  const double finest = finest_pyramid_sigma(mesh, triangles, size, texels.texels.size());
+  std::vector<std::shared_ptr<const SurfacePyramid>> pyramids(
+      std::size_t{*std::max_element(mesh.materials.begin(), mesh.materials.end())} + 1,
+      std::make_shared<const SurfacePyramid>(mesh, triangles, *field, finest));
+  return {mesh, std::move(field), std::move(pyramids)};
 }
 
 }  // namespace
@@ -50,9 +67,10 @@ TEST_CASE("the magenta outside the charts of real atlases never shows") {
     for (uint32_t t = 0; t < triangles.size(); ++t) triangles[t] = t;
     const Coverage coverage =
         texel_coverage(mesh, object.atlas, triangles, mapping, texels.width, texels.height);
-    const TextureAlbedo field(mesh, triangles, texels, coverage, mapping);
     const GreenRange range = green_range(texels, coverage);
     REQUIRE(range.low > 0.05);  // magenta has none
+    const TextureAlbedo field(mesh, triangles, texels, coverage, mapping);
+    const SurfaceAlbedo chosen = as_in_scenes(mesh, object.atlas, triangles, texels, coverage, mapping);
 
     Rng rng(1);
     for (int n = 0; n < 200000; ++n) {
@@ -60,11 +78,12 @@ TEST_CASE("the magenta outside the charts of real atlases never shows") {
       const double u = std::sqrt(rng.uniform()), v = rng.uniform();
       const SurfacePoint point = mesh.surface_point(triangle, {u * (1 - v), u * v});
       const Frame frame(point.geometric_normal);
-      KernelFootprint footprint{
-          point.uv, point.barycentric, triangle, 0.1 * std::exp(-10 * rng.uniform()), {}};
+      KernelFootprint footprint{point.uv, point.barycentric, triangle, 0.1 * std::exp(-10 * rng.uniform()),
+                                {},       point.position};
       footprint.uv_from_surface = {object.atlas.uv_from_surface(triangle, frame.tangent),
                                    object.atlas.uv_from_surface(triangle, frame.bitangent)};
-      for (const Rgb& colour : {field.at(point), field.filtered(footprint)}) {
+      for (const Rgb& colour :
+           {field.at(point), field.filtered(footprint), chosen.at(point), chosen.filtered(footprint)}) {
         INFO(name << ", triangle " << triangle << ", sigma " << footprint.sigma);
         REQUIRE(colour.g > range.low - 1e-5);
         REQUIRE(colour.g < range.high + 1e-5);
