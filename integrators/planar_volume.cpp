@@ -2,11 +2,12 @@
 
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "integrators/planar_lane.h"
+#include "integrators/planar_lattice.h"
 #include "integrators/planar_walk_texture.h"
 #include "optics/photon_walk.h"
 
@@ -17,78 +18,13 @@ namespace {
 // Independent parts of a result, from which its variance is estimated; also the unit of parallel work.
 constexpr std::size_t batch_count = 32;
 
-struct Path {
-  Vec3 position{0};                       // optical, z = depth
-  Vec3 direction{0};                      // unit, z downwards
-  std::array<double, 3> weight{0, 0, 0};  // of the first C channels
-};
-
-struct Batch {
-  explicit Batch(uint64_t seed, std::size_t index) : rng(seed, index) {}
-  Rng rng;
-  std::vector<double> sums;  // three per pixel
-  std::vector<Path> split;   // copies still to be followed
-  uint64_t paths = 0, collisions = 0;
-};
-
-/// The weight a photon should have at a place: constant below the light and falling around it about as the
-/// light does, so that the dim pixels get their share of photons too.
-class TargetWeight {
- public:
-  static constexpr double under_light = 0.25;
-
-  TargetWeight(const PlanarScene& scene, double mean_free_path, bool from_light) {
-    if (!from_light) return;
-    const Medium& medium = scene.medium;
-    const double reach = scene.light.radius / mean_free_path;
-    centre_ = scene.light.centre / mean_free_path;
-    reach_squared_ = reach * reach;
-    // A quarter of diffusion's decay at the mean albedo: following all of it would spend most of the time
-    // where there is least to see.
-    const double albedo = mean_albedo(*scene.albedo).max();
-    const double decay = 0.25 * std::sqrt(3 * (1 - albedo) * (1 - medium.g * albedo));
-    farthest_ = reach + farthest_corner(scene) / mean_free_path;
-    for (std::size_t i = 0; i < table_.size(); ++i) {
-      const double beyond = std::max(
-          0.0, farthest_ * (static_cast<double>(i) + 0.5) / static_cast<double>(table_.size()) - reach);
-      table_[i] = under_light * std::exp(-decay * beyond);
-    }
-  }
-
-  double at(Vec2 optical) const {
-    const Vec2 offset = optical - centre_;
-    const double squared = glm::dot(offset, offset);
-    if (squared <= reach_squared_) return under_light;
-    const double position = std::sqrt(squared) / farthest_ * static_cast<double>(table_.size());
-    return table_[static_cast<std::size_t>(std::min(position, static_cast<double>(table_.size() - 1)))];
-  }
-
- private:
-  // From the light's centre to the corner of the view that is farthest away, m.
-  static double farthest_corner(const PlanarScene& scene) {
-    const Vec2 to_view = glm::abs(scene.view.centre - scene.light.centre) + 0.5 * scene.view.size;
-    return glm::length(to_view);
-  }
-
-  Vec2 centre_{0};
-  double reach_squared_ = std::numeric_limits<double>::infinity(), farthest_ = 1;
-  std::array<double, 64> table_{};
-};
-
-/// Traces the paths of some channels, which share them.
-class Lane {
- public:
-  virtual ~Lane() = default;
-  virtual void photons(Batch& batch, uint64_t count) const = 0;
-  virtual void camera_paths(Batch& batch, uint64_t per_pixel) const = 0;
-};
-
 template <int C>
-class WalkLane final : public Lane {
+class WalkLane final : public PlanarLane {
  public:
   /// Serves channels first .. first + C - 1 of the texture and writes them to `outputs` channels each.
   WalkLane(const PlanarScene& scene, PlanarEstimator estimator, int first, int outputs)
       : scene_(scene),
+        from_light_(estimator == PlanarEstimator::from_light),
         analog_(estimator == PlanarEstimator::analog),
         first_(first),
         outputs_(outputs),
@@ -97,48 +33,56 @@ class WalkLane final : public Lane {
         critical_cosine_(std::sqrt(1 - 1 / (eta_ * eta_))),
         g_(scene.medium.g),
         texture_(scene, first, mean_free_path_),
-        target_weight_(scene, mean_free_path_, estimator == PlanarEstimator::from_light) {
-    const Vec3 towards = scene.view.towards;
-    const Vec2 lateral = Vec2(towards) / eta_;
-    seen_ = Vec3(lateral, -std::sqrt(1 - glm::dot(lateral, lateral)));
+        target_weight_(scene, mean_free_path_, from_light_),
+        seen_(seen_inside(scene)) {}
+
+  void run(PlanarBatch& batch, uint64_t walks) const override {
+    if (from_light_) {
+      photons(batch, walks);
+    } else {
+      camera_paths(batch, walks);
+    }
+  }
+  double paths_per_walk() const override {
+    return from_light_ ? 1 : static_cast<double>(scene_.view.width) * scene_.view.height;
   }
 
-  void photons(Batch& batch, uint64_t count) const override {
-    const auto at_collision = [&](const Path& p) {
+ private:
+  void photons(PlanarBatch& batch, uint64_t count) const {
+    const auto at_collision = [&](const PlanarPath& p) {
       if (!scene_.view.radiosity) score_collision(p, batch);
     };
-    const auto at_boundary = [&](const Path& p, double out) {
+    const auto at_boundary = [&](const PlanarPath& p, double out) {
       if (scene_.view.radiosity) score(p, out, Vec2(p.position), batch);
     };
     for (uint64_t i = 0; i < count; ++i) {
-      Path path;
+      PlanarPath path;
       const Vec2 entry = scene_.light.sample({batch.rng.uniform(), batch.rng.uniform()}) / mean_free_path_;
       path.position = Vec3(entry, 0);
       path.direction = sample_diffuse_entry(eta_, batch.rng);
       path.weight.fill(1);
       follow(path, batch, at_collision, at_boundary);
       while (!batch.split.empty()) {
-        Path copy = batch.split.back();
+        PlanarPath copy = batch.split.back();
         batch.split.pop_back();
         follow(copy, batch, at_collision, at_boundary);
       }
     }
   }
 
-  void camera_paths(Batch& batch, uint64_t per_pixel) const override {
+  void camera_paths(PlanarBatch& batch, uint64_t per_pixel) const {
     const PlanarView& view = scene_.view;
     for (int y = 0; y < view.height; ++y)
       for (int x = 0; x < view.width; ++x)
         for (uint64_t i = 0; i < per_pixel; ++i) camera_path(x, y, batch);
   }
 
- private:
   double transmittance_inside(double cosine) const {
     return cosine <= critical_cosine_ ? 0 : 1 - fresnel_dielectric(cosine, 1 / eta_);
   }
 
-  void camera_path(int x, int y, Batch& batch) const {
-    Path path;
+  void camera_path(int x, int y, PlanarBatch& batch) const {
+    PlanarPath path;
     const Vec2 start = scene_.view.point({x + batch.rng.uniform(), y + batch.rng.uniform()});
     path.position = Vec3(start / mean_free_path_, 0);
     double transmitted;
@@ -151,18 +95,18 @@ class WalkLane final : public Lane {
     }
     path.weight.fill(transmitted);
     if (analog_ && !survives(path, transmitted, batch.rng)) return;
-    const auto on_pixel = [&](const Path& p, double out) {
+    const auto on_pixel = [&](const PlanarPath& p, double out) {
       if (!scene_.light.contains(mean_free_path_ * Vec2(p.position))) return;
       add(p, out, x, y, batch);
     };
     follow(
-        path, batch, [](const Path&) {}, on_pixel);
+        path, batch, [](const PlanarPath&) {}, on_pixel);
   }
 
   /// The walk from a direction inside to its end. `at_collision` sees the path after absorption, before its
   /// new direction; `at_boundary` sees it before it leaves or turns back, with the part that would leave.
   template <class AtCollision, class AtBoundary>
-  void follow(Path& path, Batch& batch, AtCollision at_collision, AtBoundary at_boundary) const {
+  void follow(PlanarPath& path, PlanarBatch& batch, AtCollision at_collision, AtBoundary at_boundary) const {
     Rng& rng = batch.rng;
     for (;;) {
       double flight = sample_free_flight(rng);
@@ -194,14 +138,14 @@ class WalkLane final : public Lane {
   }
 
   /// Goes on with the probability of its weight, then with weight 1.
-  static bool survives(Path& path, double weight, Rng& rng) {
+  static bool survives(PlanarPath& path, double weight, Rng& rng) {
     path.weight.fill(1);
     return rng.uniform() < weight;
   }
 
   /// Keeps weights near the target of the place: light photons live on by chance, heavy ones are split.
   /// False: it died.
-  bool roulette_or_split(Path& path, double largest, Batch& batch) const {
+  bool roulette_or_split(PlanarPath& path, double largest, PlanarBatch& batch) const {
     const double target = target_weight_.at(Vec2(path.position));
     if (largest < 0.4 * target) {
       if (batch.rng.uniform() * target >= largest) return false;
@@ -218,20 +162,20 @@ class WalkLane final : public Lane {
 
   /// The exact probability of leaving towards the camera without another collision, into the pixel that sees
   /// it.
-  void score_collision(const Path& path, Batch& batch) const {
+  void score_collision(const PlanarPath& path, PlanarBatch& batch) const {
     const double distance = path.position.z / -seen_.z;
     const double value = henyey_greenstein(glm::dot(path.direction, seen_), g_) * std::exp(-distance);
     score(path, value, Vec2(path.position) + distance * Vec2(seen_), batch);
   }
 
-  void score(const Path& path, double value, Vec2 optical_point, Batch& batch) const {
+  void score(const PlanarPath& path, double value, Vec2 optical_point, PlanarBatch& batch) const {
     const PlanarView& view = scene_.view;
     const Vec2 pixel = view.pixel(mean_free_path_ * optical_point);
     if (pixel.x >= 0 && pixel.x < view.width && pixel.y >= 0 && pixel.y < view.height)
       add(path, value, static_cast<int>(pixel.x), static_cast<int>(pixel.y), batch);
   }
 
-  void add(const Path& path, double value, int x, int y, Batch& batch) const {
+  void add(const PlanarPath& path, double value, int x, int y, PlanarBatch& batch) const {
     const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.view.width) +
                               static_cast<std::size_t>(x);
     for (int c = 0; c < C * outputs_; ++c)
@@ -240,15 +184,19 @@ class WalkLane final : public Lane {
   }
 
   const PlanarScene& scene_;
-  bool analog_;
+  bool from_light_, analog_;
   int first_, outputs_;
   double mean_free_path_;  // m
   double eta_, critical_cosine_;
   double g_;
   WalkTexture<C> texture_;
   TargetWeight target_weight_;
-  Vec3 seen_{0};  // unit, inside: the direction that refracts towards the camera
+  Vec3 seen_;  // inside: the direction that refracts towards the camera
 };
+
+bool traces_from_light(PlanarEstimator estimator) {
+  return estimator == PlanarEstimator::from_light || estimator == PlanarEstimator::lattice;
+}
 
 bool is_grey(const TexelArray& texels) {
   for (const Vec4f& t : texels.texels)
@@ -256,10 +204,15 @@ bool is_grey(const TexelArray& texels) {
   return true;
 }
 
-std::vector<std::unique_ptr<Lane>> make_lanes(const PlanarScene& scene, PlanarEstimator estimator) {
-  std::vector<std::unique_ptr<Lane>> lanes;
+std::vector<std::unique_ptr<PlanarLane>> make_lanes(const PlanarScene& scene, PlanarEstimator estimator) {
+  std::vector<std::unique_ptr<PlanarLane>> lanes;
   const bool one_length = scene.medium.mean_free_path.is_grey();
-  if (one_length && is_grey(*scene.albedo)) {
+  if (estimator == PlanarEstimator::lattice) {
+    const bool grey = one_length && is_grey(*scene.albedo);
+    const int channels = one_length && !grey ? 3 : 1, outputs = grey ? 3 : 1;
+    for (int c = 0; c < 3; c += channels * outputs)
+      lanes.push_back(make_lattice_lane(scene, c, channels, outputs));
+  } else if (one_length && is_grey(*scene.albedo)) {
     lanes.push_back(std::make_unique<WalkLane<1>>(scene, estimator, 0, 3));
   } else if (one_length && estimator != PlanarEstimator::analog) {
     lanes.push_back(std::make_unique<WalkLane<3>>(scene, estimator, 0, 1));
@@ -274,8 +227,8 @@ std::vector<std::unique_ptr<Lane>> make_lanes(const PlanarScene& scene, PlanarEs
 struct PlanarVolume::State {
   PlanarScene scene;
   PlanarVolumeOptions options;
-  std::vector<std::unique_ptr<Lane>> lanes;
-  std::vector<Batch> batches;
+  std::vector<std::unique_ptr<PlanarLane>> lanes;
+  std::vector<PlanarBatch> batches;
   double cpu_seconds = 0;
 
   std::size_t pixels() const {
@@ -286,8 +239,7 @@ struct PlanarVolume::State {
   Rgb scale() const {
     const Medium& medium = scene.medium;
     const PlanarView& view = scene.view;
-    if (options.estimator != PlanarEstimator::from_light)
-      return scene.light.radiance * static_cast<double>(pixels());
+    if (!traces_from_light(options.estimator)) return scene.light.radiance * static_cast<double>(pixels());
     // Photons carry what crosses the boundary, pi c x area x radiance. A collision sends weight x
     // phase function x attenuation per steradian; over the pixel's area seen from inside that is a radiance,
     // which the boundary changes by T / eta^2.
@@ -299,8 +251,13 @@ struct PlanarVolume::State {
            (pi * ratio * transmitted / (medium.eta * medium.eta * std::sqrt(1 - sine_squared)));
   }
 
-  Rgb batch_mean(const Batch& batch, std::size_t pixel) const {
-    const double n = static_cast<double>(std::max<uint64_t>(batch.paths, 1));
+  // Lanes trace equally many walks.
+  double paths(const PlanarBatch& batch) const {
+    return static_cast<double>(batch.walks) * lanes.front()->paths_per_walk();
+  }
+
+  Rgb batch_mean(const PlanarBatch& batch, std::size_t pixel) const {
+    const double n = batch.walks > 0 ? paths(batch) : 1;
     return Rgb(batch.sums[3 * pixel], batch.sums[3 * pixel + 1], batch.sums[3 * pixel + 2]) / n * scale();
   }
 
@@ -309,9 +266,9 @@ struct PlanarVolume::State {
   };
   Estimate estimate(std::size_t pixel) const {
     Rgb sum, squares;
-    for (const Batch& batch : batches) sum += batch_mean(batch, pixel);
+    for (const PlanarBatch& batch : batches) sum += batch_mean(batch, pixel);
     const Rgb mean = sum / static_cast<double>(batch_count);
-    for (const Batch& batch : batches) {
+    for (const PlanarBatch& batch : batches) {
       const Rgb d = batch_mean(batch, pixel) - mean;
       squares += d * d;
     }
@@ -322,7 +279,7 @@ struct PlanarVolume::State {
 PlanarVolume::PlanarVolume(const PlanarScene& scene, const PlanarVolumeOptions& options)
     : state_(std::make_unique<State>()) {
   check(scene);
-  if (scene.light.shape == PlanarLight::Shape::plane && options.estimator == PlanarEstimator::from_light)
+  if (scene.light.shape == PlanarLight::Shape::plane && traces_from_light(options.estimator))
     throw InputError("scene '" + scene.name +
                      "': light on the whole plane cannot be traced from the light; "
                      "trace it from the camera");
@@ -340,21 +297,16 @@ PlanarVolume::~PlanarVolume() = default;
 void PlanarVolume::run(uint64_t paths) {
   State& state = *state_;
   const double start = alabaster::cpu_seconds();
-  uint64_t per_batch = (paths + batch_count - 1) / batch_count;
-  const bool from_light = state.options.estimator == PlanarEstimator::from_light;
-  const uint64_t per_pixel = (per_batch + state.pixels() - 1) / state.pixels();
-  if (!from_light) per_batch = per_pixel * state.pixels();
+  const PlanarLane& first = *state.lanes.front();
+  const uint64_t at_once = first.walks_at_once();
+  const double runs =
+      static_cast<double>(paths) / (batch_count * first.paths_per_walk() * static_cast<double>(at_once));
+  const uint64_t walks = at_once * static_cast<uint64_t>(std::ceil(runs));
   parallel_for(batch_count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Batch& batch = state.batches[i];
-      for (const auto& lane : state.lanes) {
-        if (from_light) {
-          lane->photons(batch, per_batch);
-        } else {
-          lane->camera_paths(batch, per_pixel);
-        }
-      }
-      batch.paths += per_batch;
+      PlanarBatch& batch = state.batches[i];
+      for (const auto& lane : state.lanes) lane->run(batch, walks);
+      batch.walks += walks;
     }
   });
   state.cpu_seconds += alabaster::cpu_seconds() - start;
@@ -389,19 +341,25 @@ double PlanarVolume::noise() const {
 }
 
 uint64_t PlanarVolume::paths() const {
-  uint64_t sum = 0;
-  for (const Batch& batch : state_->batches) sum += batch.paths;
-  return sum;
+  double sum = 0;
+  for (const PlanarBatch& batch : state_->batches) sum += state_->paths(batch);
+  return static_cast<uint64_t>(std::llround(sum));
 }
 
 uint64_t PlanarVolume::collisions() const {
   uint64_t sum = 0;
-  for (const Batch& batch : state_->batches) sum += batch.collisions;
+  for (const PlanarBatch& batch : state_->batches) sum += batch.collisions;
   return sum;
 }
 
 double PlanarVolume::cpu_seconds() const {
   return state_->cpu_seconds;
+}
+
+PlanarEstimator cheapest_estimator(const PlanarScene& scene) {
+  if (scene.light.shape == PlanarLight::Shape::plane) return PlanarEstimator::from_camera;
+  const bool small = scene.light.area() < 32 * scene.view.pixel_area();
+  return small ? PlanarEstimator::from_light : PlanarEstimator::lattice;
 }
 
 void run_to_noise(PlanarVolume& volume, double noise, uint64_t max_paths) {

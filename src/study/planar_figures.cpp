@@ -53,12 +53,15 @@ PlanarSpeed measure_planar_speed(const PlanarScene& scene, const ProfileTable& p
     const TimedImage image = render_planar(scene, parse_planar_method(name), profile, 64, seed);
     speed.seconds_to_2.emplace_back(name, to_two_percent(noise_of(image.image), image.cpu_seconds));
   }
-  PlanarVolumeOptions options;
-  options.seed = seed;
-  if (scene.light.shape == PlanarLight::Shape::plane) options.estimator = PlanarEstimator::from_camera;
-  PlanarVolume volume(scene, options);
-  volume.run(500'000);
-  speed.reference_seconds_to_2 = to_two_percent(volume.noise(), volume.cpu_seconds());
+  const auto reference = [&](PlanarEstimator estimator, uint64_t paths) {
+    PlanarVolume volume(scene, {estimator, seed});
+    volume.run(paths);
+    return to_two_percent(volume.noise(), volume.cpu_seconds());
+  };
+  const PlanarEstimator cheapest = cheapest_estimator(scene);
+  const bool lattice = cheapest == PlanarEstimator::lattice;
+  speed.reference_seconds_to_2 = reference(lattice ? PlanarEstimator::from_light : cheapest, 500'000);
+  if (lattice) speed.lattice_seconds_to_2 = reference(PlanarEstimator::lattice, 10'000'000);
   return speed;
 }
 

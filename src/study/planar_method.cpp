@@ -84,7 +84,9 @@ TimedImage render_planar_reference(const PlanarScene& scene, double noise, doubl
   const double start = wall_seconds();
   PlanarVolumeOptions options;
   options.seed = seed;
-  if (scene.light.shape == PlanarLight::Shape::plane) options.estimator = PlanarEstimator::from_camera;
+  options.estimator = cheapest_estimator(scene);
+  // A photon on the lattice costs about a hundredth of one that walks by itself.
+  if (options.estimator == PlanarEstimator::lattice) max_paths *= 100;
   PlanarVolume volume(scene, options);
   run_to_noise(volume, noise, max_paths);
   Image image = volume.develop();

@@ -30,7 +30,8 @@ TimedImage render_planar(const PlanarScene& scene, const PlanarMethod& method, c
 
 /// The volumetric reference until its noise() is at most `noise` and at least the share `known` of the pixels
 /// above 1e-4 of the maximum exceeds ten standard errors (Metrics::kept: what the log ratio needs), or
-/// `max_paths` are spent; from the light where it can be.
+/// `max_paths` (on the lattice a hundred times as many, which cost the same) are spent; by
+/// cheapest_estimator().
 TimedImage render_planar_reference(const PlanarScene& scene, double noise, double known, uint64_t max_paths,
                                    uint64_t seed);
 

@@ -27,8 +27,8 @@ ValidationBudget budget(Quality quality) {
   ValidationBudget b;
   if (quality == Quality::full) {
     b.resolution = 200;
-    b.reference_noise = 0.004;
-    b.floor_noise = 0.006;
+    b.reference_noise = 0.003;
+    b.floor_noise = 0.003;
     b.max_paths = 10'000'000'000;
     b.spp = 512;
     b.sweep_spp = 256;

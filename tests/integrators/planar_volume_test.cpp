@@ -30,14 +30,21 @@ constexpr double degrees = 31;
 
 void check_estimators_agree(const PlanarScene& scene, uint64_t camera_paths) {
   const Image light = reference(scene, PlanarEstimator::from_light, 100000);
+  const Image lattice = reference(scene, PlanarEstimator::lattice, 2000000, 4);
   const Image camera = reference(scene, PlanarEstimator::from_camera, camera_paths, 2);
   const Image analog = reference(scene, PlanarEstimator::analog, 2 * camera_paths, 3);
   const ZTest a = z_test(light, analog, degrees), b = z_test(light, camera, degrees);
-  INFO(a.where << "; " << b.where);
+  // Against counts too small to be normal the lattice's lack of noise would show their skew.
+  const ZTest l = z_test(lattice, camera, degrees), m = z_test(lattice, light, degrees);
+  INFO(a.where << "; " << b.where << "; " << l.where << "; " << m.where);
   CHECK(a.passes());
+  CHECK(l.passes());
+  CHECK(m.passes());
   CHECK(b.passes());
   CHECK(a.mean_square < 1.7);  // 1.07 expected; channels of grey scenes are one test
   CHECK(b.mean_square < 1.7);
+  CHECK(l.mean_square < 1.7);
+  CHECK(m.mean_square < 1.7);
 }
 
 }  // namespace
@@ -57,6 +64,32 @@ TEST_CASE("exact scoring, camera paths and the analog oracle agree (z-test per p
     scene.view.radiosity = true;
     scene.medium = {Rgb(1, 0.5, 0.8), -0.4, 1.3};
     check_estimators_agree(scene, 300000);
+  }
+}
+
+TEST_CASE("the lattice of photons serves any ratio of texels to pixels") {
+  PlanarScene scene = coloured_planar_scene();
+  const auto check_lattice = [&] {
+    const ZTest z = z_test(reference(scene, PlanarEstimator::lattice, 2000000),
+                           reference(scene, PlanarEstimator::from_light, 200000, 2), degrees);
+    INFO(z.where);
+    CHECK(z.passes());
+    CHECK(z.mean_square < 1.7);
+  };
+  SECTION("pixels of two and a bit texels, fewer upright") {
+    scene.view.width = 7;
+    scene.view.height = 5;
+    check_lattice();
+  }
+  SECTION("texels of several pixels") {
+    scene = small_planar_scene(3, [](int x, int y) { return Rgb(x == y ? 0.95 : 0.3); });
+    check_lattice();
+  }
+  SECTION("a tile smaller than a pixel, a view off the light's centre") {
+    scene.tile = Vec2(0.4, 0.3);
+    scene.light.centre = Vec2(0.7, -0.3);
+    scene.view.centre = Vec2(-0.2, 0.1);
+    check_lattice();
   }
 }
 

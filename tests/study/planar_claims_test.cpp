@@ -13,9 +13,9 @@ namespace {
 ValidationBudget small_budget() {
   ValidationBudget budget;
   budget.resolution = 50;
-  budget.reference_noise = 0.02;
+  budget.reference_noise = 0.005;
   budget.reference_known = 0;
-  budget.floor_noise = 0.1;
+  budget.floor_noise = 0.01;
   budget.spp = 128;
   budget.sweep_spp = 128;
   return budget;

@@ -30,9 +30,10 @@ TEST_CASE("one albedo never exceeds the basis, two tones of stripes do by eq. 2"
 
 TEST_CASE("speed is measured for every model and way of sampling") {
   const PlanarSpeed speed =
-      measure_planar_speed(planar_scenes({"constant"}, 8).front(), baseline_profile(), 1);
+      measure_planar_speed(planar_scenes({"constant"}, 40).front(), baseline_profile(), 1);
   CHECK(speed.evaluations.size() == 7);
   for (const auto& [name, rate] : speed.evaluations) CHECK(rate > 0);
   CHECK(speed.seconds_to_2.size() == 4);
   CHECK(speed.reference_seconds_to_2 > 0);
+  CHECK(speed.lattice_seconds_to_2 > 0);
 }
