@@ -191,6 +191,67 @@ TEST_CASE("across the gap of a fold a wide kernel counts both layers, a narrow o
   CHECK(across < 0.9);
 }
 
+TEST_CASE("what a Gaussian sees across a gap is the far layer's share of it in space", "[bssrdf]") {
+  // Layers 0.2 thick, 0.1 apart: faces at heights 0.05 and 0.25 above the middle and below it. A plane at a
+  // distance d counts exp(-d^2 / 2 sigma^2).
+  const Body body(make_folded_sheet(2, 0.2, 0.1, 32));
+  const auto field = textured(
+      body.mesh, bake_solid(body.mesh, side, side, [](const Vec3& p) { return Rgb(p.y > 0 ? 0.9 : 0.3); }));
+  const SurfacePoint inside = nearest(body, {0.2, 0.05, 0});
+  const double from =
+      field->by_position_from();  // narrower ones are the texture's, which knows its own layer
+  REQUIRE(from < 0.08);
+  CHECK(field->filtered(body.placement.around(inside, 0.7 * from)).r == Approx(0.9).margin(1e-5));
+  for (const double sigma : {from, 0.08, 0.1, 0.2}) {
+    const auto plane = [&](double d) { return std::exp(-0.5 * d * d / (sigma * sigma)); };
+    const double own = 1 + plane(0.2), far = plane(0.1) + plane(0.3);
+    CAPTURE(sigma, far / (own + far));
+    CHECK(field->filtered(body.placement.around(inside, sigma)).r ==
+          Approx((0.9 * own + 0.3 * far) / (own + far)).margin(0.02));
+  }
+}
+
+TEST_CASE("mirrored and tiled textures average to what the surface shows", "[bssrdf]") {
+  // Waves along u; the truth is an integral over x. Texels are 0.02 and 0.0026 m.
+  struct Case {
+    const char* name;
+    std::function<Vec2(const Vec3&)> uv;
+    int waves;
+  };
+  const Case cases[] = {
+      {"mirrored", [](const Vec3& p) { return Vec2(0.1 + 0.4 * std::abs(p.x), 0.5 + 0.4 * p.y); }, 5},
+      {"tiled", [](const Vec3& p) { return Vec2(3.0 * p.x, 3.0 * p.y); }, 2}};
+  for (const Case& c : cases) {
+    TriangleMesh mesh = make_plane(2, 64);
+    for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        mesh.uv_sets[0][mesh.attributes[t][k]] = Vec2f(c.uv(mesh.positions[mesh.corners[t][k]]));
+    const Body body(mesh);
+    const auto value = [&](double u) { return 0.5 + 0.4 * std::sin(2 * pi * c.waves * u + 1); };
+    const auto field = textured(
+        body.mesh, texels_of([&](int x, int) { return static_cast<float>(value((x + 0.5) / side)); }));
+    Rng rng(4);
+    for (const double sigma : {0.01, 0.02, 0.04, 0.08, 0.16}) {
+      double worst = 0, squared = 0;
+      constexpr int count = 60;
+      for (int n = 0; n < count; ++n) {
+        const SurfacePoint p = nearest(body, {0.4 * rng.uniform() - 0.2, 0.4 * rng.uniform() - 0.2, 0});
+        double exact = 0, weight = 0;
+        for (int i = -200; i <= 200; ++i) {
+          const double offset = 0.02 * i, w = std::exp(-0.5 * offset * offset);
+          exact += w * value(c.uv(p.position + Vec3(sigma * offset, 0, 0)).x), weight += w;
+        }
+        const double error =
+            std::abs(field->filtered(body.placement.around(p, sigma)).r - exact / weight) / 0.8;
+        worst = std::max(worst, error), squared += error * error / count;
+      }
+      CAPTURE(c.name, sigma);
+      CHECK(std::sqrt(squared) < 0.012);  // as the pyramid over space has it on a plane
+      CHECK(worst < 0.035);
+    }
+  }
+}
+
 TEST_CASE("a kernel wider than its chart counts the charts around it", "[bssrdf]") {
   // Six charts, one of them dark: from its middle, means must brighten as the kernel outgrows it.
   const Body body(make_blob(1, 0, 48));
