@@ -25,7 +25,8 @@ PlacementBody placement_body(const Scene& scene, uint32_t object) {
 
 BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium,
                                  std::vector<uint8_t> boundary, const std::string& model, Basis basis,
-                                 const std::string& placement, const std::string& distance)
+                                 const std::string& placement, const std::string& distance,
+                                 const ExpectedLight* light)
     : profile_(profile_of(scene.objects[object], medium)),
       lobe_(1 / (pi * diffuse_transmittance(medium.eta))),
       placement_(make_placement(placement, placement_body(scene, object))),
@@ -42,8 +43,8 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
   // On one albedo all models are the homogeneous one, which looks nothing up.
   if (dynamic_cast<const ConstantAlbedo*>(body.albedo.get()) != nullptr)
     model_ = make_bssrdf("homogeneous", below, {});
-  probe_ = std::make_unique<ProbeSampler>(*model_,
-                                          ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary)});
+  probe_ = std::make_unique<ProbeSampler>(
+      *model_, ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary), light});
 }
 
 std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3&,

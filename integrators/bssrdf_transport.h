@@ -19,11 +19,12 @@ class BssrdfTransport final : public SubsurfaceTransport {
  public:
   /// `boundary` has one flag per material index: whether the medium lies below its triangles. Throws
   /// InputError for a model that make_bssrdf(), a placement that make_placement() or a distance that
-  /// make_surface_distance() does not know. The scene outlives the transport.
+  /// make_surface_distance() does not know. Scene and light, which may be null, outlive the transport.
   BssrdfTransport(const Scene& scene, uint32_t object, const Medium& medium, std::vector<uint8_t> boundary,
                   const std::string& model, Basis basis = Basis::half_space,
                   const std::string& placement = std::string(default_placement),
-                  const std::string& distance = std::string(default_distance));
+                  const std::string& distance = std::string(default_distance),
+                  const ExpectedLight* light = nullptr);
 
   std::optional<SubsurfaceEntry> sample(const SurfacePoint& exit, const Vec3& viewer, const Sampler& sampler,
                                         uint32_t occurrence) const override;

@@ -19,6 +19,16 @@ constexpr double default_angular_size = pi / 180;
 // Chains of mirrors and internal reflections end here at the latest.
 constexpr int max_specular_chain = 64;
 
+/// The environment as a few directions, drawn by its own importance.
+ExpectedLight expected_light(const Environment& environment) {
+  constexpr int side = 24;
+  std::vector<ExpectedLight::Distant> lights;
+  for (int k = 0; k < side * side; ++k)
+    if (const auto light = environment.sample(Vec2(k / side + 0.5, k % side + 0.5) / double{side}))
+      lights.push_back({light->direction, light->radiance.mean() / light->pdf / (side * side)});
+  return ExpectedLight(lights);
+}
+
 double power_heuristic(double pdf, double other) {
   return pdf * pdf / (pdf * pdf + other * other);
 }
@@ -99,6 +109,7 @@ SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& o
     interfaces_.push_back({eta, diffuse_transmittance(eta)});
   }
   if (options.transport != Transport::bssrdf) check_media_apart(scene);
+  if (scene.environment && scene.lights.empty()) expected_light_ = expected_light(*scene.environment);
   prepare_bodies();
 }
 
@@ -135,7 +146,8 @@ std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t 
                                                                        std::vector<uint8_t> boundary) const {
   if (options_.transport == Transport::bssrdf)
     return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
-                                             options_.basis, options_.placement, options_.distance);
+                                             options_.basis, options_.placement, options_.distance,
+                                             expected_light_ ? &*expected_light_ : nullptr);
   if (lights_.has_sizeless())
     throw InputError(scene_.name,
                      "light without size: no walk through a smooth boundary can meet it; give it one with "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bssrdf/basis.h"
+#include "bssrdf/expected_light.h"
 #include "integrators/integrator.h"
 #include "integrators/interaction.h"
 #include "integrators/light_guide.h"
@@ -120,7 +121,8 @@ class SurfaceIntegrator final : public Integrator {
   LightSampler lights_;
   LightSampler near_lights_;  // all but the environment, which the ray that looks for other surfaces finds
   LightGuide guide_;
-  double offset_;  // m: how far rays start off a surface
+  std::optional<ExpectedLight> expected_light_;  // where the environment is all the light there is
+  double offset_;                                // m: how far rays start off a surface
   bool stochastic_opacity_ = false;
   std::vector<Interface> interfaces_;  // per material
   std::vector<std::unique_ptr<Body>> bodies_;

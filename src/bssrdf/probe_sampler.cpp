@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "bssrdf/smoothed_normals.h"
 #include "core/frame.h"
@@ -27,12 +28,18 @@ constexpr double area_share = 0.005;
 constexpr double brightest_share = 0.05;
 
 /// With the shape basis: width of the disk for light that crosses the body, in thicknesses; how far through
-/// the body probes always look; and the most of the radii that follow it.
+/// the body its probes always look; and the most of the draws that follow it, and the least worth the
+/// trouble.
 constexpr double body_width = 0.5;
 constexpr double body_reach = 1.3;
-constexpr double most_body_light = 0.85;
+constexpr double most_body_light = 0.85, least_body_light = 0.03;
 /// Entries expected to be worth less than this part of all that leaves are followed more seldom.
 constexpr double full_worth = 1;
+/// With the shape basis one entry is chosen among the hits of two probes where the surface stands at more
+/// than this (1 - cosine) to the way it faces on the whole, or where the albedo is that far (relatively) from
+/// the one around.
+constexpr double rough = 0.05;
+constexpr double contrasting = 0.2;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -42,6 +49,25 @@ bool decide(double& u, double probability) {
   }
   u = std::min((u - probability) / (1 - probability), 0x1.fffffffffffffp-1);
   return false;
+}
+
+double half_turned(double x) {
+  return x < 0.5 ? x + 0.5 : x - 0.5;
+}
+Vec2 half_turned(Vec2 u) {
+  return {half_turned(u.x), half_turned(u.y)};
+}
+
+/// Radii over a disk whose density falls as 1 / (1 + rho^2)^2 per area, up to a factor.
+double disk_pdf(double rho) {
+  const double spread = 1 + rho * rho;
+  return 2 * rho / (spread * spread);
+}
+double disk_cdf(double rho) {
+  return rho * rho / (1 + rho * rho);
+}
+double disk_radius(double u) {
+  return std::sqrt(u / (1 - u));
 }
 
 /// Three directions at equal angles to a normal and to each other: none of them can miss a flat surface,
@@ -71,10 +97,25 @@ Rgb unpack(uint64_t bits) {
 
 }  // namespace
 
+/// Part of a line along an axis, m from where it passes the exit.
+struct ProbeSampler::Part {
+  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+};
+
+ProbeSampler::Part ProbeSampler::near_part(const Exit& exit, double radius) {
+  const double near = exit.near_limit + near_radii * radius;
+  return {-near, near};
+}
+
+ProbeSampler::Part ProbeSampler::near_part(const Exit::Crossing& crossing, double radius) {
+  return {-(crossing.near_limit + near_radii * radius), near_radii * radius};
+}
+
 /// An entry found, before S_V is evaluated.
 struct ProbeSampler::Candidate {
   SurfacePoint surface;
   double density;
+  Rgb albedo;
   PointShape shape;
   double importance = 1;  // about S_V / density
 };
@@ -137,103 +178,92 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   std::optional<Exit> result(std::in_place);
   Exit& exit = *result;
   exit.point = point;
-  const Vec3 to_centre = centre_ - point.surface.position;
   exit.typical = typical;
-  const double body_share = add_components(exit, typical);
-  // Light that crosses a body comes from straight behind, whatever the surroundings face.
-  Vec3 facing(facing_[point.surface.triangle]);
-  if (body_share > 0) {
-    const double own = std::min(1.0, 4 * body_share);
-    facing = glm::normalize((1 - own) * facing + (own + 1e-9) * point.shape.normal);
-  }
+  const Vec3 facing(facing_[point.surface.triangle]);
   const std::array<Vec3, 3> directions = tilted_axes(facing);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Vec3 to_circle = to_centre - glm::dot(to_centre, directions[a]) * directions[a];
-    exit.axes[a] = {directions[a], to_circle, glm::length(to_circle)};
-  }
-  const double farthest = glm::length(to_centre) + radius_;
-  for (int k = 0; k < exit.component_count; ++k) {
-    Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    c.reach = component_cdf(c, farthest);
-    c.density_scale = c.probability * c.sigma_t / c.reach;
-  }
+  for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis(exit, directions[a]);
+  add_components(exit);
+  exit.probes = varied(exit, facing) ? 2 : 1;
+  if (target_.light != nullptr) exit.usual_light = std::sqrt(target_.light->relative(facing));
   return result;
 }
 
-double ProbeSampler::add_components(Exit& exit, const Rgb& typical) const {
-  const Rgb& sigma_t = model_.medium().sigma_t;
-  const auto add = [&](int level, double sigma, double share) {
+bool ProbeSampler::varied(const Exit& exit, const Vec3& facing) const {
+  if (!body_light_) return false;  // the half-space basis varies little beside what a probe costs
+  if (1 - std::abs(glm::dot(exit.point.surface.geometric_normal, facing)) > rough) return true;
+  if (typical_.empty()) return false;
+  for (int c = 0; c < 3; ++c)
+    if (std::abs(exit.point.albedo[c] - exit.typical[c]) > contrasting * exit.typical[c]) return true;
+  return false;
+}
+
+ProbeSampler::Exit::Axis ProbeSampler::axis(const Exit& exit, const Vec3& direction) const {
+  const Vec3 to_centre = centre_ - exit.point.surface.position;
+  const Vec3 to_circle = to_centre - glm::dot(to_centre, direction) * direction;
+  return {direction, to_circle, glm::length(to_circle)};
+}
+
+void ProbeSampler::add_components(Exit& exit) const {
+  const Rgb &typical = exit.typical, &sigma_t = model_.medium().sigma_t;
+  if (typical.is_grey() && sigma_t.is_grey()) {
+    add_channel(exit, 0, 1);
+  } else {
+    const double sum = typical.r + typical.g + typical.b;
+    for (int c = 0; c < 3; ++c)
+      if (typical[c] > 0) add_channel(exit, c, typical[c] / sum);
+  }
+  const double farthest = glm::distance(centre_, exit.point.surface.position) + radius_;
+  for (int k = 0; k < exit.component_count; ++k) {
+    Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
+    c.reach = model_.distances().cdf(c.level, c.sigma_t * farthest);
+    c.density_scale = c.probability * c.sigma_t / c.reach;
+    c.profile_scale /= c.reach;
+  }
+  Exit::Crossing& crossing = exit.crossing;
+  if (crossing.probability < least_body_light) crossing.probability = 0;
+  if (crossing.probability == 0) return;
+  const double thickness = 1 / exit.point.shape.inverse_thickness;
+  const std::array<Vec3, 3> directions = tilted_axes(exit.point.shape.normal);
+  for (std::size_t a = 0; a < 3; ++a) crossing.axes[a] = axis(exit, directions[a]);
+  crossing.inverse_radius = 1 / (body_width * thickness);
+  crossing.reach = disk_cdf(crossing.inverse_radius * farthest);
+  crossing.near_limit = body_reach * thickness;
+}
+
+void ProbeSampler::add_channel(Exit& exit, int channel, double share) const {
+  const double sigma = model_.medium().sigma_t[channel], albedo = exit.typical[channel];
+  const auto add = [&](int level, double probability, double share_of_profile) {
     for (int k = 0; k < exit.component_count; ++k) {
       Exit::Component& other = exit.components[static_cast<std::size_t>(k)];
-      if (other.level == level && other.sigma_t == sigma) {
-        other.probability += share;
-        return;
-      }
+      if (other.level != level || other.sigma_t != sigma) continue;
+      other.probability += probability;
+      other.profile_scale += share_of_profile * sigma;
+      return;
     }
     Exit::Component& fresh = exit.components[static_cast<std::size_t>(exit.component_count++)];
     fresh.level = level;
     fresh.sigma_t = sigma;
-    fresh.probability = share;
+    fresh.probability = probability;
+    fresh.profile_scale = share_of_profile * sigma;
   };
-  const auto add_channel = [&](int c, double share) {
-    const int level = DistanceTable::level(typical[c]);
-    add(level, sigma_t[c], (1 - brightest_share) * share);
-    add(std::min(level, brightest_level_[static_cast<std::size_t>(c)]), sigma_t[c], brightest_share * share);
-    exit.near_limit = std::max(exit.near_limit, near_distance_[static_cast<std::size_t>(level)] / sigma_t[c]);
-  };
-  // Light that crosses the body, if it is thin enough; one disk serves all channels.
+  const int level = DistanceTable::level(albedo);
+  const int brightest = std::min(level, brightest_level_[static_cast<std::size_t>(channel)]);
+  exit.near_limit = std::max(exit.near_limit, near_distance_[static_cast<std::size_t>(level)] / sigma);
   const PointShape& shape = exit.point.shape;
-  double body_share = 0;
-  const auto add_both = [&](int c, double share) {
-    double body = 0;
-    if (body_light_ && shape.inverse_thickness > 0)
-      body = std::min(most_body_light,
-                      body_light_->share(DistanceTable::level(typical[c]),
-                                         sigma_t[c] / shape.inverse_thickness, shape.sphericity));
-    add_channel(c, share * (1 - body));
-    body_share += share * body;
-  };
-  if (typical.is_grey() && sigma_t.is_grey()) {
-    add_both(0, 1);
-  } else {
-    const double sum = typical.r + typical.g + typical.b;
-    for (int c = 0; c < 3; ++c)
-      if (typical[c] > 0) add_both(c, typical[c] / sum);
-  }
-  if (body_share > 0) add_body_light(exit, body_share);
-  return body_share;
+  if (body_light_ && shape.inverse_thickness > 0)
+    exit.crossing.probability +=
+        share * std::min(most_body_light,
+                         body_light_->share(level, sigma / shape.inverse_thickness, shape.sphericity));
+  add(level, (1 - brightest_share) * share, share);
+  add(brightest, brightest_share * share, 0);
 }
 
-void ProbeSampler::add_body_light(Exit& exit, double share) const {
-  const double thickness = 1 / exit.point.shape.inverse_thickness;
-  Exit::Component& disk = exit.components[static_cast<std::size_t>(exit.component_count++)];
-  disk.level = -1;
-  disk.sigma_t = 1 / (body_width * thickness);
-  disk.probability = share;
-  exit.near_limit = std::max(exit.near_limit, body_reach * thickness);
-}
-
-// The next three in units of 1 / sigma_t.
-double ProbeSampler::component_pdf(const Exit::Component& c, double radius) const {
-  const double rho = c.sigma_t * radius;
-  return c.level < 0 ? 2 * rho / ((1 + rho * rho) * (1 + rho * rho)) : model_.distances().pdf(c.level, rho);
-}
-
-double ProbeSampler::component_cdf(const Exit::Component& c, double radius) const {
-  const double rho = c.sigma_t * radius;
-  return c.level < 0 ? rho * rho / (1 + rho * rho) : model_.distances().cdf(c.level, rho);
-}
-
-double ProbeSampler::component_radius(const Exit::Component& c, double u) const {
-  return c.level < 0 ? std::sqrt(u / (1 - u)) : model_.distances().sample(c.level, u);
-}
-
-/// Density per metre of the radius around any axis.
+/// Density per metre of the radius around any of the tilted axes.
 double ProbeSampler::radius_density(const Exit& exit, double radius) const {
   double sum = 0;
   for (int k = 0; k < exit.component_count; ++k) {
     const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
-    sum += c.density_scale * component_pdf(c, radius);
+    sum += c.density_scale * model_.distances().pdf(c.level, c.sigma_t * radius);
   }
   return sum;
 }
@@ -247,34 +277,40 @@ double ProbeSampler::half_angle(const Exit::Axis& axis, double radius) const {
 }
 
 std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 disk) const {
+  const bool far = choice.y < far_probability;
+  const bool crosses = decide(choice.x, exit.crossing.probability);
   const auto a = std::min<std::size_t>(static_cast<std::size_t>(3 * choice.x), 2);
-  const Exit::Axis& axis = exit.axes[a];
+  if (crosses) {
+    const Exit::Crossing& c = exit.crossing;
+    const double radius = disk_radius(disk.x * c.reach) / c.inverse_radius;
+    return chord(exit, c.axes[a], radius, disk.y, far ? Part{} : near_part(c, radius));
+  }
   double u = 3 * choice.x - static_cast<double>(a);
   std::size_t k = 0;
   while (k + 1 < static_cast<std::size_t>(exit.component_count) && u >= exit.components[k].probability)
     u -= exit.components[k++].probability;
   const Exit::Component& c = exit.components[k];
-  const double radius = component_radius(c, disk.x * c.reach) / c.sigma_t;
+  const double radius = model_.distances().sample(c.level, disk.x * c.reach) / c.sigma_t;
+  return chord(exit, exit.axes[a], radius, disk.y, far ? Part{} : near_part(exit, radius));
+}
+
+std::optional<Probe> ProbeSampler::chord(const Exit& exit, const Exit::Axis& axis, double radius, double turn,
+                                         const Part& part) const {
   const double half_arc = half_angle(axis, radius);
   if (!(half_arc > 0)) return std::nullopt;
-  const double angle = half_arc * (2 * disk.y - 1);
+  const double angle = half_arc * (2 * turn - 1);
   const Vec3 across =
       axis.centre > 1e-9 * radius_ ? axis.to_circle / axis.centre : Frame(axis.direction).tangent;
   const Vec3 aside = glm::cross(axis.direction, across);
   const Vec3 centre =
       exit.point.surface.position + radius * (std::cos(angle) * across + std::sin(angle) * aside);
 
-  // The chord within the bounding sphere, then its near part.
+  // The chord within the bounding sphere, then the part of it that is searched.
   const Vec3 to_sphere = centre_ - centre;
   const double middle = glm::dot(to_sphere, axis.direction);
   const double half_squared = radius_ * radius_ - (length_squared(to_sphere) - middle * middle);
   const double half = std::sqrt(std::max(half_squared, 0.0));
-  double low = middle - half, high = middle + half;
-  if (choice.y >= far_probability) {
-    const double near = exit.near_limit + near_radii * radius;
-    low = std::max(low, -near);
-    high = std::min(high, near);
-  }
+  const double low = std::max(middle - half, part.low), high = std::min(middle + half, part.high);
   if (!(low < high)) return std::nullopt;
   Probe probe;
   probe.ray.origin = centre + low * axis.direction;
@@ -285,22 +321,34 @@ std::optional<Probe> ProbeSampler::choose(const Exit& exit, Vec2 choice, Vec2 di
 
 double ProbeSampler::density(const Exit& exit, const SurfacePoint& entry) const {
   const Vec3 offset = entry.position - exit.point.surface.position;
-  double sum = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Exit::Axis& axis = exit.axes[a];
+  const double square = length_squared(offset);
+  // Of lines along an axis, per density of the radius.
+  const auto lines = [&](const Exit::Axis& axis, double along, double radius, const Part& near) {
+    const double searched = along >= near.low && along <= near.high ? 1 : far_probability;
+    return searched * std::abs(glm::dot(entry.geometric_normal, axis.direction)) /
+           (radius * 2 * half_angle(axis, radius));
+  };
+  const auto place = [&](const Exit::Axis& axis) {
     const double along = glm::dot(offset, axis.direction);
-    const double radius = std::max(glm::length(offset - along * axis.direction), 1e-100);
-    const bool near = std::abs(along) <= exit.near_limit + near_radii * radius;
-    sum += (near ? 1 : far_probability) * std::abs(glm::dot(entry.geometric_normal, axis.direction)) *
-           radius_density(exit, radius) / (radius * 2 * half_angle(axis, radius));
+    return Vec2(along, std::max(std::sqrt(std::max(square - along * along, 0.0)), 1e-100));
+  };
+  double around = 0, across = 0;
+  for (const Exit::Axis& axis : exit.axes) {
+    const Vec2 p = place(axis);
+    around += lines(axis, p.x, p.y, near_part(exit, p.y)) * radius_density(exit, p.y);
   }
-  return area_share / area_.area() + (1 - area_share) * sum / 3;
+  const Exit::Crossing& c = exit.crossing;
+  for (std::size_t a = 0; c.probability > 0 && a < 3; ++a) {
+    const Vec2 p = place(c.axes[a]);
+    across += lines(c.axes[a], p.x, p.y, near_part(c, p.y)) * c.inverse_radius *
+              disk_pdf(c.inverse_radius * p.y) / c.reach;
+  }
+  return area_share / area_.area() +
+         (1 - area_share) * ((1 - c.probability) * around + c.probability * across) / 3;
 }
 
-std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const EntryRandom& u) const {
+void ProbeSampler::draw(const Exit& exit, const EntryRandom& u, std::vector<Candidate>& candidates) const {
   static thread_local std::vector<Hit> hits;
-  static thread_local std::vector<Candidate> candidates;
-  candidates.clear();
   const auto add = [&](uint32_t triangle, Vec2 barycentric) {
     if (!in_medium(triangle)) return;
     const SurfacePoint surface = target_.mesh->surface_point(triangle, barycentric);
@@ -310,6 +358,7 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
     candidate.surface = surface;
     candidate.surface.object = target_.object;
     candidate.density = density(exit, surface);
+    candidate.albedo = model_.medium().albedo->at(candidate.surface);
     candidate.shape = model_.medium().shape_at(triangle, barycentric);
     candidate.importance = importance(exit, candidate, distance);
   };
@@ -321,22 +370,35 @@ std::span<ProbeSampler::Candidate> ProbeSampler::draw(const Exit& exit, const En
     target_.rays->all_hits(target_.object, probe->ray, hits);
     for (const Hit& hit : hits) add(hit.triangle, hit.barycentric);
   }
-  return candidates;
 }
 
-/// About S_V / density: without the shape basis by the density of the radii, which costs a table lookup; with
-/// it by the basis itself, since the far side of a body may send more light than the near side.
+/// About S_V / density times the light, in units of what leaves where the light is as usual: by the density
+/// of the radii, which costs a table lookup, and in one channel the factor of the shape, since the far side
+/// of a body may send more light than the near side.
 double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, double distance) const {
-  if (!body_light_) return radius_density(exit, distance) / (distance * candidate.density);
-  const PairShape pair =
-      model_.pair(candidate.surface.position, candidate.shape, exit.point.surface.position, exit.point.shape);
-  return model_.basis_over_albedo(exit.typical, pair).mean() / candidate.density;
+  double profile = 0;
+  for (int k = 0; k < exit.component_count; ++k) {
+    const Exit::Component& c = exit.components[static_cast<std::size_t>(k)];
+    if (c.profile_scale > 0)
+      profile += c.profile_scale * model_.distances().pdf(c.level, c.sigma_t * distance);
+  }
+  double value = profile / (2 * pi * distance * candidate.density);
+  if (body_light_) {
+    const BssrdfMedium& medium = model_.medium();
+    const PairShape pair = model_.pair(candidate.surface.position, candidate.shape,
+                                       exit.point.surface.position, exit.point.shape);
+    value *= medium.shape->families->factor(pair, Rgb(exit.typical.mean()), Rgb(medium.sigma_t.mean())).r;
+  }
+  value *= candidate.albedo.mean() / exit.typical.mean();
+  if (target_.light != nullptr)
+    value *= target_.light->relative(candidate.surface.shading_normal) / exit.usual_light;
+  return value;
 }
 
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {
   EntrySample entry;
   const SurfacePoint& surface = candidate.surface;
-  entry.point = {surface, model_.medium().albedo->at(surface), candidate.shape};
+  entry.point = {surface, candidate.albedo, candidate.shape};
   entry.density = candidate.density;
   entry.weight = model_.evaluate(entry.point, exit.point) * (factor / candidate.density);
   return entry;
@@ -345,22 +407,23 @@ EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, d
 std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, const EntryRandom& u) const {
   const std::optional<Exit> exit = prepare(point);
   if (!exit) return std::nullopt;
-  const std::span<Candidate> candidates = draw(*exit, u);
+  static thread_local std::vector<Candidate> candidates;
+  candidates.clear();
+  draw(*exit, u, candidates);
+  // The second probe is the first one turned: two strata of every number.
+  if (exit->probes == 2) draw(*exit, {half_turned(u.choice), half_turned(u.disk), 0}, candidates);
   double sum = 0;
   for (const Candidate& c : candidates) sum += c.importance;
+  const double worth = sum / exit->probes;
   if (!(sum > 0)) return std::nullopt;
-  // The far-part decision left choice.y uniform on either side of far_probability.
-  double rest = u.choice.y;
-  decide(rest, far_probability);
-  double left = rest * sum;
+  double left = u.pick * sum;
   std::size_t k = 0;
   while (k + 1 < candidates.size() && left >= candidates[k].importance) left -= candidates[k++].importance;
-  // What it should be worth, in units of what leaves under uniform light. The less it is, the more seldom it
-  // is worth evaluating S_V and the light there; the part of the random number left over decides.
-  const double worth = body_light_ ? full_worth : sum / (2 * pi);
+  // The less it should be worth, the more seldom it is worth evaluating S_V and the light there; the part of
+  // the random number left over decides.
   const double survival = std::min(1.0, worth / full_worth);
   if (survival < 1 && left >= survival * candidates[k].importance) return std::nullopt;
-  return finish(*exit, candidates[k], sum / (candidates[k].importance * survival));
+  return finish(*exit, candidates[k], worth / (candidates[k].importance * survival));
 }
 
 std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
@@ -368,6 +431,7 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, c
   EntryRandom u;
   u.choice = sampler.get_2d(Dimension::entry_strategy, occurrence);
   u.disk = sampler.get_2d(Dimension::entry_radius, occurrence);
+  u.pick = sampler.get_1d(Dimension::entry_hit, occurrence);
   return sample_entry(exit, u);
 }
 
@@ -375,13 +439,13 @@ std::size_t ProbeSampler::sample_entries(const BssrdfPoint& point, const EntryRa
                                          std::span<EntrySample> entries) const {
   const std::optional<Exit> exit = prepare(point);
   if (!exit || entries.empty()) return 0;
-  const std::span<Candidate> candidates = draw(*exit, u);
+  static thread_local std::vector<Candidate> candidates;
+  candidates.clear();
+  draw(*exit, u, candidates);
   const std::size_t count = std::min(candidates.size(), entries.size());
   if (count == 0) return 0;
   // A run of `count` candidates that starts anywhere, wrapping around: each is in it equally often.
-  double rest = u.choice.y;
-  decide(rest, far_probability);
-  const auto start = static_cast<std::size_t>(rest * static_cast<double>(candidates.size()));
+  const auto start = static_cast<std::size_t>(u.pick * static_cast<double>(candidates.size()));
   const double factor = static_cast<double>(candidates.size()) / static_cast<double>(count);
   for (std::size_t k = 0; k < count; ++k)
     entries[k] = finish(*exit, candidates[(start + k) % candidates.size()], factor);

@@ -10,6 +10,7 @@
 #include "bssrdf/area_sampler.h"
 #include "bssrdf/body_light.h"
 #include "bssrdf/bssrdf.h"
+#include "bssrdf/expected_light.h"
 #include "core/sampler.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
@@ -23,12 +24,16 @@ struct ProbeTarget {
   uint32_t object = 0;  // the mesh's id in `rays`
   /// One flag per material index of the mesh: whether it bounds this medium. Empty: all do.
   std::vector<uint8_t> material_in_medium;
+  /// What entries may expect, where that is known: those in the dark are followed more seldom. Null: all
+  /// alike.
+  const ExpectedLight* light = nullptr;
 };
 
 /// Random numbers of one draw, uniform in [0, 1).
 struct EntryRandom {
-  Vec2 choice{0};  // x: strategy, axis, component of the radius; y: far part of the chord, hit
-  Vec2 disk{0};    // radius and angle, or the point of the area strategy
+  Vec2 choice{0};   // x: strategy, axis, component of the radius; y: far part of the chord
+  Vec2 disk{0};     // radius and angle, or the point of the area strategy
+  double pick = 0;  // which of the hits, and whether it is followed
 };
 
 /// Where light may have entered, with the weight that makes sums of weight * E(entry) unbiased for the
@@ -58,11 +63,12 @@ class ProbeSampler {
   struct Exit {
     /// Radii for one channel at one albedo.
     struct Component {
-      int level;       // of the distance table; -1: a disk for light that crosses the body
-      double sigma_t;  // 1/m; of the disk the inverse of its radius
+      int level;       // of the distance table
+      double sigma_t;  // 1/m
       double probability;
       double reach;          // share of the distribution within the object's sphere
       double density_scale;  // what its density is multiplied by
+      double profile_scale;  // the same where the half-space's profile is meant
     };
     /// A probe direction, seen from which the object's bounding sphere is a circle.
     struct Axis {
@@ -70,12 +76,24 @@ class ProbeSampler {
       Vec3 to_circle;  // to the circle's centre, perpendicular to the direction, m
       double centre;   // m: length of that
     };
+    /// Light that crosses a thin body comes from straight behind: probes about the exit's own normal, within
+    /// a disk as wide as the body is thick.
+    struct Crossing {
+      double probability = 0;
+      std::array<Axis, 3> axes;
+      double inverse_radius = 0;  // 1/m
+      double reach = 1;           // as a component's
+      double near_limit = 0;
+    };
     BssrdfPoint point;
     std::array<Axis, 3> axes;
-    std::array<Component, 7> components;
+    std::array<Component, 6> components;
     int component_count = 0;
-    double near_limit = 0;  // m: beyond it along the chord, only some probes look
-    Rgb typical;            // the albedo that draws are aimed at
+    int probes = 1;  // that one entry is chosen from, at most 2
+    Crossing crossing;
+    double near_limit = 0;   // m: beyond it along the chord, only some probes look
+    Rgb typical;             // the albedo that draws are aimed at
+    double usual_light = 1;  // that entries are expected to get
   };
   /// Nothing where no light can leave, because the albedo is 0.
   std::optional<Exit> prepare(const BssrdfPoint& exit) const;
@@ -101,17 +119,22 @@ class ProbeSampler {
 
  private:
   struct Candidate;
-  std::span<Candidate> draw(const Exit& exit, const EntryRandom& u) const;
+  void draw(const Exit& exit, const EntryRandom& u, std::vector<Candidate>& candidates) const;
   EntrySample finish(const Exit& exit, const Candidate& candidate, double factor) const;
   Rgb typical_albedo(const BssrdfPoint& exit) const;
-  /// Returns the share of light that crosses the body.
-  double add_components(Exit& exit, const Rgb& typical) const;
-  void add_body_light(Exit& exit, double share) const;
+  /// Whether entries around are worth very different amounts, so that a choice among more of them pays.
+  bool varied(const Exit& exit, const Vec3& facing) const;
+  Exit::Axis axis(const Exit& exit, const Vec3& direction) const;
+  void add_components(Exit& exit) const;
+  void add_channel(Exit& exit, int channel, double share) const;
+  void add_crossing(Exit& exit) const;
   double importance(const Exit& exit, const Candidate& candidate, double distance) const;
-  double component_pdf(const Exit::Component& component, double radius) const;
-  double component_cdf(const Exit::Component& component, double radius) const;
-  double component_radius(const Exit::Component& component, double u) const;
   double radius_density(const Exit& exit, double radius) const;
+  struct Part;
+  static Part near_part(const Exit& exit, double radius);
+  static Part near_part(const Exit::Crossing& crossing, double radius);
+  std::optional<Probe> chord(const Exit& exit, const Exit::Axis& axis, double radius, double turn,
+                             const Part& part) const;
   double half_angle(const Exit::Axis& axis, double radius) const;
   bool in_medium(uint32_t triangle) const;
 

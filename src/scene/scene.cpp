@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/rng.h"
+#include "geometry/spatial_order.h"
 #include "scene/albedo.h"
 
 namespace alabaster {
@@ -38,6 +39,9 @@ double opacity(const Material& material, const TriangleMesh& mesh, uint32_t tria
 }
 
 namespace {
+
+/// Meshes of fewer triangles are kept as they come: the caches hold them in any order.
+constexpr std::size_t large_mesh = 1 << 17;
 
 /// `random` of a ray serves all layers it meets: mixed with the triangle it becomes a number per layer.
 double random_of_layer(double random, uint32_t object, uint32_t triangle) {
@@ -121,7 +125,10 @@ bool reads_albedo_texture(const Scene& scene, const SceneObject& object) {
 }  // namespace
 
 void prepare_scene(Scene& scene) {
-  for (SceneObject& object : scene.objects) object.report = clean_mesh(object.mesh);
+  for (SceneObject& object : scene.objects) {
+    object.report = clean_mesh(object.mesh);
+    if (object.mesh.triangle_count() >= large_mesh) sort_in_space(object.mesh);
+  }
   std::erase_if(scene.objects, [&](const SceneObject& object) {
     if (object.mesh.triangle_count() > 0) return false;
     scene.warnings.push_back(

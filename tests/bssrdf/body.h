@@ -55,7 +55,7 @@ inline std::vector<alabaster::SurfacePoint> points_on(const alabaster::TriangleM
 }
 
 inline alabaster::EntryRandom entry_random(alabaster::Rng& rng) {
-  return {{rng.uniform(), rng.uniform()}, {rng.uniform(), rng.uniform()}};
+  return {{rng.uniform(), rng.uniform()}, {rng.uniform(), rng.uniform()}, rng.uniform()};
 }
 
 inline constexpr const char* all_models[] = {"homogeneous", "factorized",          "aggregate",
