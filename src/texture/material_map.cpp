@@ -137,8 +137,8 @@ Rgb TextureAlbedo::filtered(const KernelFootprint& footprint) const {
   const Mat2 spread = footprint.sigma * (texels_from_st * (st_from_uv_ * uv_from_surface));
   const Mat2 covariance = spread * glm::transpose(spread);
   const double trace = covariance[0][0] + covariance[1][1], determinant = glm::determinant(covariance);
-  // A footprint stretched by less than 1.12 : 1 counts as round: one lookup instead of several.
-  if (determinant >= 0.2468 * trace * trace) return pyramid_.filtered(st, std::sqrt(0.5 * trace));
+  // A footprint stretched by less than 1.06 : 1 counts as round: one lookup instead of several.
+  if (determinant >= 0.24915 * trace * trace) return pyramid_.filtered(st, std::sqrt(0.5 * trace));
   return pyramid_.filtered(st, covariance);
 }
 
