@@ -44,22 +44,14 @@ double variance_of(std::size_t k) {
   return std::exp2(2.0 * static_cast<double>(k / families)) * family_variance[k % families];
 }
 
-// How one triangle is cut: `along` its longest edge and `across`, towards the corner opposite.
+// A triangle's cuts: its longest edge into `along`, its height above that into `across` where it is highest.
 struct Cuts {
   int along = 1, across = 1;
-  int edge = 0;  // the corner at which the longest edge begins
+  int edge = 0;     // the corner at which the longest edge begins
+  double foot = 0;  // where the third corner stands above the longest edge, 0 .. 1
 
-  // Slivers are cut into strips, or a needle would take the square of its length in points.
+  // Slivers are cut into slices across, or a needle would take the square of its length in points.
   bool sliver() const { return 2 * across < along; }
-  int pieces(int strip) const {
-    return static_cast<int>(std::ceil(along * (1 - static_cast<double>(strip) / across)));
-  }
-  std::size_t points() const {
-    if (!sliver()) return static_cast<std::size_t>(along) * static_cast<std::size_t>(along);
-    std::size_t sum = 0;
-    for (int strip = 0; strip < across; ++strip) sum += static_cast<std::size_t>(pieces(strip));
-    return sum;
-  }
 };
 
 Cuts cuts_of(const TriangleMesh& mesh, uint32_t triangle, double spacing) {
@@ -70,43 +62,67 @@ Cuts cuts_of(const TriangleMesh& mesh, uint32_t triangle, double spacing) {
     const double length = glm::distance(mesh.positions[c[k]], mesh.positions[c[(k + 1) % 3]]);
     if (length > longest) longest = length, result.edge = static_cast<int>(k);
   }
+  if (!(longest > 0)) return result;
   const auto count = [&](double length) {
     return static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, 2048.0));
   };
   result.along = count(longest);
-  result.across = longest > 0 ? count(2 * mesh.area(triangle) / longest) : 1;
+  result.across = count(2 * mesh.area(triangle) / longest);
+  const auto corner = [&](int k) {
+    return mesh.positions[c[static_cast<std::size_t>((result.edge + k) % 3)]];
+  };
+  const Vec3 base = corner(1) - corner(0);
+  result.foot = std::clamp(glm::dot(corner(2) - corner(0), base) / (longest * longest), 0.0, 1.0);
   return result;
 }
 
-// Calls visit(barycentric, share of the area) for every piece of a triangle.
+// Calls visit(barycentric, share of the area) for the pieces of a sliver between `from` and `to` of its
+// longest edge, where its height rises or falls from `height` to `height_to` (1: the highest).
 template <class Visit>
-void for_each_piece(const Cuts& cuts, const Visit& visit) {
-  if (!cuts.sliver()) {
-    const int n = cuts.along;
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < 2 * (n - j) - 1; ++i) {
-        // Even ones point as the whole does, odd ones stand on their heads between them.
-        const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-        visit(Vec2(i / 2 + third, j + third) / static_cast<double>(n), 1.0 / n / n);
-      }
-    return;
-  }
-  for (int strip = 0; strip < cuts.across; ++strip) {
-    const double low = static_cast<double>(strip) / cuts.across,
-                 high = static_cast<double>(strip + 1) / cuts.across;
-    const double half_area = (high - low) - 0.5 * (high * high - low * low);
-    const double moment = (high * high - low * low) / 2 - (high * high * high - low * low * low) / 3;
-    const double height = moment / half_area;  // of the strip's centroid
-    const int n = cuts.pieces(strip);
-    for (int i = 0; i < n; ++i) {
-      const double s = (i + 0.5) / n;
+void for_each_slice(const Cuts& cuts, double from, double to, double height, double height_to,
+                    const Visit& visit) {
+  const int slices = static_cast<int>(std::ceil(cuts.along * (to - from)));
+  const double step = (to - from) / slices, rise = (height_to - height) / slices;
+  for (int i = 0; i < slices; ++i) {
+    const double low = height + i * rise, high = low + rise;  // of a trapezium
+    const int pieces = std::max(1, static_cast<int>(std::ceil(cuts.across * std::max(low, high))));
+    const double t = from + step * (i + (low + 2 * high) / (3 * (low + high)));
+    const double mean_height = 2.0 / 3 * (low * low + low * high + high * high) / (low + high);
+    for (int j = 0; j < pieces; ++j) {
+      const double h = mean_height * (j + 0.5) / pieces;
       std::array<double, 3> weight;
-      weight[static_cast<std::size_t>(cuts.edge)] = (1 - height) * (1 - s);
-      weight[static_cast<std::size_t>((cuts.edge + 1) % 3)] = (1 - height) * s;
-      weight[static_cast<std::size_t>((cuts.edge + 2) % 3)] = height;
-      visit(Vec2(weight[1], weight[2]), 2 * half_area / n);
+      weight[static_cast<std::size_t>(cuts.edge)] = 1 - t - h * (1 - cuts.foot);
+      weight[static_cast<std::size_t>((cuts.edge + 1) % 3)] = t - h * cuts.foot;
+      weight[static_cast<std::size_t>((cuts.edge + 2) % 3)] = h;
+      visit(Vec2(weight[1], weight[2]), step * (low + high) / pieces);
     }
   }
+}
+
+// The same for all of a triangle.
+template <class Visit>
+void for_each_piece(const Cuts& cuts, const Visit& visit) {
+  if (cuts.sliver()) {
+    for_each_slice(cuts, 0, cuts.foot, 0, 1, visit);
+    for_each_slice(cuts, cuts.foot, 1, 1, 0, visit);
+    return;
+  }
+  const int n = cuts.along;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < 2 * (n - j) - 1; ++i) {
+      // Even ones point as the whole does, odd ones stand on their heads between them.
+      const double third = i % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+      visit(Vec2(i / 2 + third, j + third) / static_cast<double>(n), 1.0 / n / n);
+    }
+}
+
+std::size_t piece_count(const Cuts& cuts) {
+  std::size_t count = 0;
+  if (cuts.sliver())
+    for_each_piece(cuts, [&](const Vec2&, double) { ++count; });
+  else
+    count = static_cast<std::size_t>(cuts.along) * static_cast<std::size_t>(cuts.along);
+  return count;
 }
 
 void add_triangle(const TriangleMesh& mesh, uint32_t triangle, const Cuts& cuts, const AlbedoField& field,
@@ -133,7 +149,7 @@ std::vector<Splat> surface_splats(const TriangleMesh& mesh, std::span<const uint
   std::vector<Cuts> cuts(triangles.size());
   for (std::size_t k = 0; k < triangles.size(); ++k) {
     cuts[k] = cuts_of(mesh, triangles[k], spacing);
-    first[k + 1] = first[k] + cuts[k].points();
+    first[k + 1] = first[k] + piece_count(cuts[k]);
   }
   std::vector<Splat> splats(first.back());
   parallel_for(triangles.size(), 256, [&](std::size_t begin, std::size_t end) {

@@ -1,11 +1,12 @@
 #include "texture/surface_pyramid.h"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "core/rng.h"
 #include "geometry/shapes.h"
+#include "support/uv_meshes.h"
 #include "texture/material_map.h"
 #include "texture/surface_albedo.h"
 
@@ -24,12 +25,6 @@ class SolidAlbedo final : public AlbedoField {
  private:
   std::function<double(const Vec3&)> value_;
 };
-
-std::vector<uint32_t> all_triangles(const TriangleMesh& mesh) {
-  std::vector<uint32_t> all(mesh.triangle_count());
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
 
 SurfacePyramid pyramid_of(const TriangleMesh& mesh, const AlbedoField& field, double finest) {
   return SurfacePyramid(mesh, all_triangles(mesh), field, finest);
@@ -200,4 +195,42 @@ TEST_CASE("a plane with one affine map of UV needs no pyramid over space") {
   TriangleMesh bent = plane;
   bent.uv_sets[0][5].x += 0.01F;
   CHECK_FALSE(is_affine(bent, UvAtlas(bent), all_triangles(bent)));
+}
+
+TEST_CASE("needles take points by their length, and average as the same surface cut regularly") {
+  // Triangles of length 1 that fan out over a width of `width`, each cut into `cuts` along its length.
+  const auto fan = [](int needles, double width, int cuts) {
+    std::vector<UvTriangle> triangles;
+    for (int n = 0; n < needles; ++n) {
+      const double low = width * n / needles, high = width * (n + 1) / needles;
+      const auto at = [&](double y, int k) { return Vec2(k, y * k) / static_cast<double>(cuts); };
+      triangles.push_back({Vec2(0), at(low, 1), at(high, 1)});
+      for (int k = 1; k < cuts; ++k) {
+        triangles.push_back({at(low, k), at(low, k + 1), at(high, k + 1)});
+        triangles.push_back({at(low, k), at(high, k + 1), at(high, k)});
+      }
+    }
+    return uv_mesh(triangles);
+  };
+  std::atomic<std::size_t> points = 0;
+  const SolidAlbedo field([&](const Vec3& p) {
+    ++points;
+    return 0.5 + 0.4 * std::cos(40 * p.x);
+  });
+  constexpr double finest = 0.01;
+  // One needle of aspect 10^5, and a triangle of aspect 5 made of forty of aspect 200.
+  for (const auto& [needles, width] : {std::pair{1, 1e-5}, std::pair{40, 0.2}}) {
+    points = 0;
+    const SurfacePyramid pyramid = pyramid_of(fan(needles, width, 1), field, finest);
+    // A fifth of the spacing, finest sigma / sqrt(7 / 6), apart; the rest tells the range of the values.
+    CHECK(static_cast<double>(points.load()) <
+          5.4 / finest * needles * (1 + 5.4 * width / needles / finest) + 64 * needles);
+    const SurfacePyramid regular = pyramid_of(fan(needles, width, 200), field, finest);
+    for (const double sigma : {0.01, 0.03, 0.1, 1.0})
+      for (double x = 0.1; x <= 1; x += 0.0317) {
+        CAPTURE(needles, sigma, x);
+        const Vec3 p(x, 0.4 * width * x, 0);
+        CHECK(pyramid.filtered(p, sigma).r == Approx(regular.filtered(p, sigma).r).margin(0.005));
+      }
+  }
 }
