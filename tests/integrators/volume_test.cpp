@@ -82,23 +82,81 @@ TEST_CASE("what a walk cannot do is refused in one line") {
   point.lights.push_back(PointLight{Vec3(1), Rgb(1)});
   CHECK(refusal(point, 1) == "accepted");
   CHECK_THAT(refusal(point, 0), Catch::Contains("light without size") && Catch::Contains("--angular-size"));
+}
 
-  Scene crossing;
-  add(crossing, make_sphere(0.1, 16), medium_material(Rgb(0.9), Rgb(0.01)));
-  add(crossing, placed(make_sphere(0.1, 16), Vec3(0.15, 0, 0)), medium_material(Rgb(0.9), Rgb(0.01)));
-  CHECK_THAT(refusal(crossing),
-             Catch::Contains("object0") && Catch::Contains("overlaps the medium of object 'object1'"));
+TEST_CASE("media that overlap, touch or lie in one another are refused, whichever part and place it is") {
+  // The message for two objects of one medium.
+  const auto verdict = [](TriangleMesh first, TriangleMesh second) -> std::string {
+    Scene scene;
+    add(scene, std::move(first), medium_material(Rgb(0.9), Rgb(0.01)));
+    add(scene, std::move(second), medium_material(Rgb(0.9), Rgb(0.01)));
+    prepare_scene(scene);
+    try {
+      const SurfaceIntegrator integrator(scene, volume_options({0, 0, 1}));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto ball = [](double radius, Vec3 centre) { return placed(make_sphere(radius, 16), centre); };
+  const auto box = [](Vec3 size, Vec3 centre) {
+    TriangleMesh mesh = make_slab(1, 1, 1);
+    const BoundingBox bounds = bounding_box(mesh);
+    for (Vec3& p : mesh.positions) p = centre + size * ((p - bounds.low) / (bounds.high - bounds.low) - 0.5);
+    return mesh;
+  };
+  const auto both = [](TriangleMesh a, const TriangleMesh& b) {
+    a.uv_sets.clear();
+    const auto shifted = [](Index3 index, std::size_t by) {
+      for (uint32_t& i : index) i += static_cast<uint32_t>(by);
+      return index;
+    };
+    for (const Index3& c : b.corners) a.corners.push_back(shifted(c, a.positions.size()));
+    for (const Index3& c : b.attributes) a.attributes.push_back(shifted(c, a.normals.size()));
+    a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+    a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
+    return a;
+  };
+  const Catch::Matchers::StdString::ContainsMatcher overlaps = Catch::Contains("overlaps the medium of"),
+                                                    touches = Catch::Contains("touches the medium of"),
+                                                    lies_in = Catch::Contains("lies in the medium of");
 
-  Scene nested;
-  add(nested, make_sphere(0.1, 16), medium_material(Rgb(0.9), Rgb(0.01)));
-  add(nested, make_sphere(0.05, 16), medium_material(Rgb(0.9), Rgb(0.01)));
-  CHECK_THAT(refusal(nested),
-             Catch::Contains("object1") && Catch::Contains("lies in the medium of object 'object0'"));
-
-  Scene apart;
-  add(apart, make_sphere(0.1, 16), medium_material(Rgb(0.9), Rgb(0.01)));
-  add(apart, placed(make_sphere(0.1, 16), Vec3(0.15, 0.15, 0)), medium_material(Rgb(0.9), Rgb(0.01)));
-  CHECK(refusal(apart) == "accepted");
+  SECTION("crossing") {
+    CHECK_THAT(verdict(ball(0.1, Vec3(0)), ball(0.1, {0.15, 0, 0})),
+               Catch::Contains("object0") && Catch::Contains("overlaps the medium of object 'object1'"));
+    // A needle through a plate: no vertex of either is inside the other.
+    CHECK_THAT(verdict(box({0.001, 0.001, 1}, Vec3(0)), box({1, 1, 0.1}, {0.01, 0.02, 0})), overlaps);
+    CHECK_THAT(verdict(box({1, 1, 0.1}, Vec3(0)), box({0.001, 0.001, 1}, {0.01, 0.02, 0})), overlaps);
+    // Only the second part of the first object does.
+    CHECK_THAT(verdict(both(ball(0.1, {5, 0, 0}), ball(0.1, Vec3(0))), ball(0.1, {0.15, 0, 0})), overlaps);
+  }
+  SECTION("touching") {
+    CHECK_THAT(verdict(box(Vec3(1), Vec3(0)), box(Vec3(1), {1, 0, 0})), touches);  // a whole face
+    CHECK_THAT(verdict(box(Vec3(1), Vec3(0)), box(Vec3(1), {1, 1, 1})), touches);  // a corner
+    CHECK_THAT(verdict(box(Vec3(1), Vec3(0)), box(Vec3(0.5), {0.75, 0.1, 0.1})), touches);
+    CHECK_THAT(verdict(ball(0.1, Vec3(0)), ball(0.1, Vec3(0))), touches);  // the same twice
+    // A cross of two bars: faces lie in one plane, no vertex of either is on the other.
+    CHECK_THAT(verdict(box({2, 0.4, 0.2}, Vec3(0)), box({0.4, 2, 0.2}, {0, 0, 0.2})), overlaps);
+    // Two edges that cross at one place.
+    TriangleMesh ridge = box(Vec3(1), Vec3(0)), other = ridge;
+    for (Vec3& p : ridge.positions) p = {p.x, (p.y - p.z) * std::sqrt(0.5), (p.y + p.z) * std::sqrt(0.5)};
+    for (Vec3& p : other.positions)
+      p = {(p.x - p.z) * std::sqrt(0.5), p.y, (p.x + p.z) * std::sqrt(0.5) + std::sqrt(2.0)};
+    CHECK(verdict(ridge, other) != "accepted");
+  }
+  SECTION("nested") {
+    CHECK_THAT(verdict(ball(0.1, Vec3(0)), ball(0.05, Vec3(0))),
+               Catch::Contains("object1") && Catch::Contains("lies in the medium of object 'object0'"));
+    CHECK_THAT(verdict(ball(0.05, Vec3(0)), ball(0.1, Vec3(0))), lies_in);
+    // Only the second part of the second object does.
+    CHECK_THAT(verdict(ball(0.1, Vec3(0)), both(ball(0.1, {0.3, 0, 0}), ball(0.02, {0.01, 0, 0}))), lies_in);
+  }
+  SECTION("apart") {
+    CHECK(verdict(ball(0.1, Vec3(0)), ball(0.1, {0.15, 0.15, 0})) == "accepted");
+    CHECK(verdict(box(Vec3(1), Vec3(0)), box(Vec3(1), {1.0001, 0, 0})) == "accepted");
+    CHECK(verdict(box({2, 0.4, 0.2}, Vec3(0)), box({0.4, 2, 0.2}, {0, 0, 0.2001})) == "accepted");
+    CHECK(verdict(both(ball(0.1, {-0.3, 0, 0}), ball(0.1, {0.3, 0, 0})), ball(0.1, Vec3(0))) == "accepted");
+  }
 }
 
 TEST_CASE("an open sheet over a half-space reflects what adding-doubling says (z-test at 1e-4)") {
