@@ -108,7 +108,7 @@ json describe_material(const Material& material) {
     result["medium"] = {{"mean_free_path", triple(material.medium->mean_free_path)},
                         {"g", material.medium->g},
                         {"eta", material.medium->eta},
-                        {"mean_albedo", triple(material.mean_albedo)}};
+                        {"mean_albedo", material.mean_albedo ? triple(*material.mean_albedo) : json()}};
   for (const auto& [role, texture] : textures_of(material))
     result["textures"][role] = {{"width", texture->texels().width},
                                 {"height", texture->texels().height},
@@ -163,6 +163,12 @@ std::string path_text(const Rgb& path) {
   return fmt::format("{} / {} / {}", length_text(path.r), length_text(path.g), length_text(path.b));
 }
 
+std::string albedo_text(const Material& material) {
+  if (!material.mean_albedo) return "unknown until its profile is baked, as the first render does";
+  return fmt::format("{:.6f} / {:.6f} / {:.6f}", material.mean_albedo->r, material.mean_albedo->g,
+                     material.mean_albedo->b);
+}
+
 void print_object(const Scene& scene, const SceneObject& object) {
   const MeshReport& report = object.report;
   fmt::print("  {}: {}, {}, {}\n", object.name, plural(object.mesh.triangle_count(), "triangle", "triangles"),
@@ -186,9 +192,9 @@ void print_object(const Scene& scene, const SceneObject& object) {
 void print_material(const Material& material) {
   fmt::print("  {}: {}\n", material.name, material.medium_reason);
   if (material.medium)
-    fmt::print("    mean free path {}, g {:.3g}, eta {:.3g}, mean albedo {:.6f} / {:.6f} / {:.6f}\n",
+    fmt::print("    mean free path {}, g {:.3g}, eta {:.3g}, mean albedo {}\n",
                path_text(material.medium->mean_free_path), material.medium->g, material.medium->eta,
-               material.mean_albedo.r, material.mean_albedo.g, material.mean_albedo.b);
+               albedo_text(material));
   for (const auto& [role, texture] : textures_of(material))
     fmt::print("    {} {} x {}\n", role, texture->texels().width, texture->texels().height);
 }
@@ -229,7 +235,9 @@ void add_info_command(CLI::App& app) {
   command->add_option("MODEL", options->file, "A .glb, .gltf or scene .json file")->required();
   command->add_flag("--json", options->as_json, "Print JSON on standard output (docs/gltf_support.md)");
   command->callback([options] {
-    const LoadedScene loaded = load_scene(options->file, {});
+    LoadOptions load;
+    load.purpose = Purpose::describe;
+    const LoadedScene loaded = load_scene(options->file, load);
     if (options->as_json)
       fmt::print("{}\n", describe(loaded.scene).dump(2, ' ', false, json::error_handler_t::replace));
     else

@@ -49,6 +49,14 @@ void check(const ProfileRequest& request) {
     throw InputError(fmt::format("eta = {}: outside [1, 4]", request.eta));
 }
 
+bool is_of(const TableData& table, const ProfileRequest& request) {
+  return table.g == request.g && table.eta == request.eta && table.view == request.view;
+}
+
+bool is_baseline(const ProfileRequest& request) {
+  return is_of(baseline_table(), request);
+}
+
 }  // namespace
 
 ProfileStore::ProfileStore(fs::path folder, uint64_t photons)
@@ -107,10 +115,7 @@ Table read_or_bake(const fs::path& file, const Read& read, const Fits& fits, con
 
 std::shared_ptr<const TableData> ProfileStore::load_or_bake(const ProfileRequest& request) {
   return std::make_shared<TableData>(read_or_bake<TableData>(
-      file_of(request), read_table,
-      [&](const TableData& table) {
-        return table.g == request.g && table.eta == request.eta && table.view == request.view;
-      },
+      file_of(request), read_table, [&](const TableData& table) { return is_of(table, request); },
       [&] { return bake(request); }, write_table));
 }
 
@@ -152,17 +157,29 @@ std::shared_ptr<const ProfileTable> ProfileStore::get(const ProfileRequest& requ
   auto& profile = profiles_[{request.g, request.eta, request.view, request.form}];
   if (profile) return profile;
   auto& table = tables_[{request.g, request.eta, request.view}];
-  if (!table) {
-    const bool is_baseline = request.g == baseline_table().g && request.eta == baseline_table().eta &&
-                             request.view == TableView::all;
-    table = is_baseline ? std::shared_ptr<const TableData>(&baseline_table(), [](const TableData*) {})
-                        : load_or_bake(request);
-  }
+  if (!table)
+    table = is_baseline(request)
+                ? std::shared_ptr<const TableData>(&baseline_table(), [](const TableData*) {})
+                : load_or_bake(request);
   if (request.form == ProfileForm::mixture)
     profile = std::make_shared<MixtureProfile>(*table);
   else
     profile = std::make_shared<TabulatedProfile>(*table);
   return profile;
+}
+
+bool ProfileStore::has(const ProfileRequest& request) {
+  check(request);
+  if (is_baseline(request)) return true;
+  const std::lock_guard<std::mutex> guard(mutex_);
+  auto& table = tables_[{request.g, request.eta, request.view}];
+  try {
+    if (!table) table = std::make_shared<TableData>(read_table(file_of(request)));
+    if (is_of(*table, request)) return true;
+  } catch (const InputError&) {
+  }
+  table = nullptr;
+  return false;
 }
 
 namespace {
@@ -172,10 +189,21 @@ ProfileStore& store_of_user() {
   return store;
 }
 
+ProfileRequest nearest_request(double g, double eta) {
+  ProfileRequest request;
+  request.g = std::clamp(g, -0.99, 0.99);
+  request.eta = std::clamp(eta, 1.0, 4.0);
+  return request;
+}
+
 }  // namespace
 
 std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request) {
   return store_of_user().get(request);
+}
+
+bool profile_is_baked(double g, double eta) {
+  return store_of_user().has(nearest_request(g, eta));
 }
 
 std::shared_ptr<const ShapeFamilies> shapes_for(double g, double eta) {
@@ -183,9 +211,7 @@ std::shared_ptr<const ShapeFamilies> shapes_for(double g, double eta) {
 }
 
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta) {
-  ProfileRequest request;
-  request.g = std::clamp(g, -0.99, 0.99);
-  request.eta = std::clamp(eta, 1.0, 4.0);
+  const ProfileRequest request = nearest_request(g, eta);
   if (request.g != g || request.eta != eta)
     warn(fmt::format(
         "profiles end at |g| = 0.99 and eta = 4: for g = {}, eta = {} that of g = {}, eta = {} is taken", g,

@@ -32,6 +32,8 @@ class ProfileStore {
 
   /// Throws InputError for g outside [-0.99, 0.99] or eta outside [1, 4].
   std::shared_ptr<const ProfileTable> get(const ProfileRequest& request);
+  /// Whether get() would find the table without baking.
+  bool has(const ProfileRequest& request);
   std::filesystem::path file_of(const ProfileRequest& request) const;
   /// The shapes of the same medium, kept beside the table; `photons` of the table set theirs too.
   std::shared_ptr<const ShapeFamilies> get_shapes(double g, double eta);
@@ -58,6 +60,8 @@ std::shared_ptr<const ProfileTable> profile_for(const ProfileRequest& request);
 /// The same for a medium of a scene: beyond the range the nearest there is, with a warning. Kept until the
 /// program ends.
 std::shared_ptr<const ProfileTable> profile_for(double g, double eta);
+/// Whether that one would be found without baking.
+bool profile_is_baked(double g, double eta);
 /// The shapes that go with it: built in for the baseline, else baked once.
 std::shared_ptr<const ShapeFamilies> shapes_for(double g, double eta);
 

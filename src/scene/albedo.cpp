@@ -24,6 +24,11 @@ double largest_value(const AlbedoSource& source) {
   return source.meaning == AlbedoSource::Meaning::albedo ? 1 : max_reflectance;
 }
 
+bool needs_bake(const Material& material) {
+  return material.albedo.meaning == AlbedoSource::Meaning::reflectance &&
+         !profile_is_baked(material.medium->g, material.medium->eta);
+}
+
 ReflectanceToAlbedo inversion(const Material& material) {
   switch (material.albedo.meaning) {
     case AlbedoSource::Meaning::albedo:
@@ -93,12 +98,13 @@ Vec3 mean_vertex_colour(const TriangleMesh& mesh, const std::vector<uint32_t>& t
 
 class AlbedoBuilder {
  public:
-  explicit AlbedoBuilder(Scene& scene) : scene_(scene), statistics_(scene.materials.size()) {}
+  AlbedoBuilder(Scene& scene, Purpose purpose)
+      : scene_(scene), purpose_(purpose), statistics_(scene.materials.size()) {}
 
   void run() {
     for (SceneObject& object : scene_.objects) {
       object.albedo = build(object);
-      if (object.albedo) add_pyramids(object);
+      if (object.albedo && purpose_ == Purpose::render) add_pyramids(object);
       object.density = build_density(object);
     }
     finish();
@@ -110,6 +116,16 @@ class AlbedoBuilder {
     Rgb sum;
     double clamped = 0;
   };
+
+  bool knows_albedo(const Material& material) const {
+    return purpose_ == Purpose::render || !needs_bake(material);
+  }
+
+  /// Where albedos stay unknown, one that counts and clamps alike.
+  ReflectanceToAlbedo inversion_for(const Material& material) const {
+    if (knows_albedo(material)) return inversion(material);
+    return [](double value, int) { return value; };
+  }
 
   std::unique_ptr<AlbedoField> build(const SceneObject& object) {
     std::map<uint16_t, std::vector<uint32_t>> triangles;
@@ -163,15 +179,15 @@ class AlbedoBuilder {
     if (!mesh.uv_sets.empty() && (source.texture || (coloured && holds_a_picture(object))))
       return build_textured(object, index, triangles, coloured);
     const Rgb plain = factor * value_without_uvs(source);
+    const ReflectanceToAlbedo to_albedo = inversion_for(material);
     if (!coloured) {
-      const Rgb albedo = convert(plain, inversion(material), largest_value(source));
+      const Rgb albedo = convert(plain, to_albedo, largest_value(source));
       count(index, albedo, 1, plain.max() > largest_value(source) ? 1 : 0);
       return std::make_unique<ConstantAlbedo>(albedo);
     }
     std::vector<Rgb> albedo;
     for (const Vec4f& colour : mesh.colours)
-      albedo.push_back(
-          convert(plain * Rgb(colour.r, colour.g, colour.b), inversion(material), largest_value(source)));
+      albedo.push_back(convert(plain * Rgb(colour.r, colour.g, colour.b), to_albedo, largest_value(source)));
     auto field = std::make_unique<VertexAlbedo>(mesh, triangles, std::move(albedo));
     for (const uint32_t t : triangles) {
       SurfacePoint middle;
@@ -213,7 +229,7 @@ class AlbedoBuilder {
                                 mapping.uv_set == 0 ? object.atlas : UvAtlas(object.mesh, mapping.uv_set),
                                 triangles, mapping, texels->width, texels->height);
     AlbedoTexels albedo = albedo_texels(*texels, source.factor * source.strength, coverage.weights,
-                                        inversion(material), largest_value(source));
+                                        inversion_for(material), largest_value(source));
     count_texels(index, albedo, coverage.weights);
     if (!everywhere) fill_gutters(object.mesh, triangles, mapping, albedo.texels, coverage);
     return std::make_unique<TextureAlbedo>(object.mesh, triangles, albedo.texels, coverage, mapping);
@@ -342,7 +358,7 @@ class AlbedoBuilder {
     for (std::size_t i = 0; i < statistics_.size(); ++i) {
       const Statistics& s = statistics_[i];
       Material& material = scene_.materials[i];
-      if (s.weight > 0) material.mean_albedo = s.sum / s.weight;
+      if (s.weight > 0 && knows_albedo(material)) material.mean_albedo = s.sum / s.weight;
       if (s.clamped > 0)
         warn(material, fmt::format("asks for a reflectance above {} on {} of it, which is clamped",
                                    max_reflectance, share_text(s.clamped / s.weight)));
@@ -354,13 +370,14 @@ class AlbedoBuilder {
   }
 
   Scene& scene_;
+  Purpose purpose_;
   std::vector<Statistics> statistics_;
 };
 
 }  // namespace
 
-void build_albedo_fields(Scene& scene) {
-  AlbedoBuilder(scene).run();
+void build_albedo_fields(Scene& scene, Purpose purpose) {
+  AlbedoBuilder(scene, purpose).run();
 }
 
 }  // namespace alabaster

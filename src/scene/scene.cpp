@@ -124,7 +124,7 @@ bool reads_albedo_texture(const Scene& scene, const SceneObject& object) {
 
 }  // namespace
 
-void prepare_scene(Scene& scene) {
+void prepare_scene(Scene& scene, Purpose purpose) {
   for (SceneObject& object : scene.objects) {
     object.report = clean_mesh(object.mesh);
     if (object.mesh.triangle_count() >= large_mesh) sort_in_space(object.mesh);
@@ -153,7 +153,7 @@ void prepare_scene(Scene& scene) {
       }
     }
   }
-  build_albedo_fields(scene);
+  build_albedo_fields(scene, purpose);
   add_emissive_triangles(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     scene.rays.add(scene.objects[i].mesh, opacity_filter(scene, static_cast<uint32_t>(i)));

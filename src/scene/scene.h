@@ -36,10 +36,10 @@ struct Material {
   double ior = 1.5;
   double transmission = 0;
 
-  std::optional<Medium> medium;  // none: an opaque surface. A medium of albedo 0 is absorbing glass
-  AlbedoSource albedo;           // read where there is a medium
-  Rgb mean_albedo{0};            // of the medium over the texture; set by prepare_scene
-  std::string medium_reason;     // why it became a medium or not, for `info`
+  std::optional<Medium> medium;    // none: an opaque surface. A medium of albedo 0 is absorbing glass
+  AlbedoSource albedo;             // read where there is a medium
+  std::optional<Rgb> mean_albedo;  // of the medium over the texture; set by prepare_scene
+  std::string medium_reason;       // why it became a medium or not, for `info`
   std::shared_ptr<const Texture> density_map;     // R: share of the medium's sigma_t, 0 to 1
   std::shared_ptr<const Texture> subsurface_map;  // R: 0 plain diffuse .. 1 subsurface
 };
@@ -87,9 +87,13 @@ struct Scene {
   }
 };
 
+/// What a scene is loaded for: where it is only described nothing is baked, an albedo whose profile would
+/// have to be stays unknown, and pyramids over space are not built.
+enum class Purpose { render, describe };
+
 /// Cleans the meshes, builds atlases, albedo fields, bounds, emissive-triangle lights and the ray scene, and
 /// adds warnings. Call once when objects, materials and lights stand. Throws InputError when nothing is left
 /// to render.
-void prepare_scene(Scene& scene);
+void prepare_scene(Scene& scene, Purpose purpose = Purpose::render);
 
 }  // namespace alabaster

@@ -81,7 +81,7 @@ void load_bare_model(const fs::path& path, const LoadOptions& options, LoadedSce
   take_model(path, scene);
   apply_medium_rules(scene, rules_from(options), path.string());
   say_default_length(scene, options.mean_free_path.has_value());
-  prepare_scene(scene);
+  prepare_scene(scene, options.purpose);
   ensure_camera(scene, true);
   // The key comes from the upper left of the camera.
   const Camera& camera = scene.cameras.front();
@@ -103,7 +103,7 @@ void load_description(const fs::path& path, const LoadOptions& options, LoadedSc
   rules.overrides = std::move(description.materials);
   apply_medium_rules(scene, rules, path.string());
   scene.lights.insert(scene.lights.end(), description.lights.begin(), description.lights.end());
-  prepare_scene(scene);
+  prepare_scene(scene, options.purpose);
   scene.environment = std::move(description.environment);
   scene.environment_visible = description.environment_visible;
   if (description.camera) scene.cameras.insert(scene.cameras.begin(), *description.camera);

@@ -19,6 +19,7 @@ struct LoadOptions {
   std::string subsurface_map;  // image path
   std::string camera;          // name of the camera to use
   bool hide_environment = false;
+  Purpose purpose = Purpose::render;
 };
 
 struct LoadedScene {

@@ -73,18 +73,22 @@ TEST_CASE("the store bakes once, keeps the table, and mends a broken file") {
   set_quiet(true);
   const ScratchFolder folder;
   ProfileStore first(folder.path() / "new" / "cache", few);
+  CHECK(first.has({}));  // built in
+  CHECK_FALSE(first.has(other));
   const auto profile = first.get(other);
   CHECK(profile->g() == 0);
   CHECK(profile->eta() == 1.3);
   CHECK(first.get(other) == profile);
   CHECK(first.bakes() == 1);
   ProfileStore second(folder.path() / "new" / "cache", few);
+  CHECK(second.has(other));
   CHECK(second.get(other)->reflectance(0.8) == profile->reflectance(0.8));
   CHECK(second.bakes() == 0);
 
   const std::string bytes = read_text(second.file_of(other));
   write_text_atomically(second.file_of(other), bytes.substr(0, bytes.size() / 2));
   ProfileStore third(folder.path() / "new" / "cache", few);
+  CHECK_FALSE(third.has(other));
   CHECK(third.get(other)->reflectance(0.8) == profile->reflectance(0.8));
   CHECK(third.bakes() == 1);
   CHECK(read_text(third.file_of(other)) == bytes);
@@ -93,6 +97,7 @@ TEST_CASE("the store bakes once, keeps the table, and mends a broken file") {
   ProfileRequest elsewhere = other;
   elsewhere.eta = 1.31;
   write_text_atomically(third.file_of(elsewhere), bytes);
+  CHECK_FALSE(third.has(elsewhere));
   CHECK(third.get(elsewhere)->eta() == 1.31);
   CHECK(third.bakes() == 2);
   set_quiet(false);

@@ -86,7 +86,7 @@ TEST_CASE("a bare model gets a medium by the default rule, a camera and the sky"
   CHECK(albedo.r == Approx(profile.albedo_from_reflectance(0.5)));
   CHECK(albedo.g == Approx(profile.albedo_from_reflectance(0.25)));
   CHECK(albedo.b == Approx(profile.albedo_from_reflectance(0.98)));  // clamped, with a warning
-  CHECK(wax.mean_albedo.r == Approx(albedo.r));
+  CHECK(wax.mean_albedo->r == Approx(albedo.r));
   CHECK(std::count_if(scene.warnings.begin(), scene.warnings.end(),
                       [](const std::string& w) { return contains(w, "clamped"); }) == 1);
   CHECK(scene.cameras.at(0).name == "side");

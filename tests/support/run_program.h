@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// What a run of the real program left.
@@ -16,8 +17,9 @@ struct ProgramRun {
 };
 
 struct ProgramOptions {
-  std::filesystem::path working_folder;  // empty: this process's
-  std::filesystem::path program;         // empty: the program under test
+  std::filesystem::path working_folder;                            // empty: this process's
+  std::filesystem::path program;                                   // empty: the program under test
+  std::vector<std::pair<std::string, std::string>> environment{};  // variables set beside this process's
   /// Called with the process id once the program runs, for instance to send it a signal.
   std::function<void(pid_t)> meanwhile;
 };
