@@ -88,6 +88,36 @@ TEST_CASE("order by order and place by place, the vectorised walk is the scalar 
   }
 }
 
+TEST_CASE("light that is thrown straight back and forth leaves by Fresnel alone (z-test at 1e-4)") {
+  // Partial reflections are rare beside total ones: at eta = 1.5 their share of the light of any order is
+  // below a hundredth, and what follows them is seen in no other test. With g close to -1 all flights are of
+  // one line, which meets the boundary within the critical cone only. Half the light reaches the surface
+  // after its first collision, where 1 - F leaves; of what is reflected the flight goes on below, and half of
+  // it comes back after the second collision: E[1 - F] / 2 and E[F (1 - F)] / 4 leave with orders 1 and 2,
+  // the mean taken over light that entered.
+  const WalkMedium medium{-0.9999, 3};
+  double entered = 0, first = 0, second = 0;
+  constexpr int steps = 10000;
+  for (int i = 0; i < steps; ++i) {
+    const double cosine = (i + 0.5) / steps, f = fresnel_dielectric(cosine, medium.eta);
+    const double weight = cosine * (1 - f);
+    entered += weight;
+    first += weight * (1 - f) / 2;
+    second += weight * f * (1 - f) / 4;
+  }
+  const PathTally tally = half_space_tally({medium, 16 * photons_per_chunk, 23, false});
+  const auto photons = static_cast<double>(tally.photons());
+  for (const auto& [order, share] : {std::pair{1, first / entered}, std::pair{2, second / entered}}) {
+    double exits = 0;
+    for (int bin = 0; bin < RadialBins::count; ++bin)
+      exits += static_cast<double>(tally.exits(OrderGroups::index(order), bin));
+    const double deviation = std::sqrt(photons * share * (1 - share));
+    INFO("order " << order << ": " << exits / photons << " +- " << deviation / photons << ", exact "
+                  << share);
+    CHECK(two_sided_normal_p_value((exits - photons * share) / deviation) > sidak(1e-4, 2));
+  }
+}
+
 TEST_CASE("under uniform light the normal view of both walks is adding-doubling's") {
   // g = 0.3, eta = 1.5, 32 quadrature points: the reflectance at normal incidence (table in
   // published_values_test) without the mirrored 0.04, which by reciprocity is the radiance along the normal
