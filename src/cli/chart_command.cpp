@@ -35,9 +35,7 @@ void run(ChartSettings& settings) {
   if (settings.what == "pyramids") return run_study(settings, &chart_pyramids);
   ChartOptions& options = settings.options;
   options.quality = quality_from_name(settings.budgets);
-  options.output = settings.study.output;
-  options.cache = settings.study.cache;
-  options.seed = settings.study.seed;
+  settings.study.set(options);
   options.budget = chart_budget(options.quality);
   options.budget->mesh = settings.study.applied_to(options.budget->mesh);
   const ChartResult result = chart_speed_and_accuracy(options);

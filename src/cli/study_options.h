@@ -20,6 +20,14 @@ struct StudyOptions {
   std::optional<int> resolution;  // of meshes
   std::optional<double> noise;    // of the references of meshes
 
+  /// Where the files of a study go and its seed, which all kinds of options hold under these names.
+  template <typename Options>
+  void set(Options& options) const {
+    options.output = output;
+    options.cache = cache;
+    options.seed = seed;
+  }
+
   /// The budget with what was asked for in its place.
   MeshBudget applied_to(MeshBudget budget) const;
 };

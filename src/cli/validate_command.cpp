@@ -37,9 +37,7 @@ void measure_response(ValidateSettings& settings) {
 void run(ValidateSettings& settings) {
   set_thread_count(settings.study.threads);
   settings.options.quality = quality_from_name(settings.quality);
-  settings.options.output = settings.study.output;
-  settings.options.cache = settings.study.cache;
-  settings.options.seed = settings.study.seed;
+  settings.study.set(settings.options);
   (settings.what == "response" ? measure_response : measure_images)(settings);
 }
 

@@ -77,7 +77,11 @@ class BodyLaneWalk : LaneState {
       const int lanes = (active_ + vector_width - 1) / vector_width * vector_width;
       scatter(static_cast<float>(medium_.g), lanes);
       fly(lanes);
-      settle();
+      settle([this](int i) { return ends(i); }, [this](int i) { return launch(i); },
+             [this](int from, int to) {
+               move(from, to);
+               crosses_[to] = crosses_[from];
+             });
     }
   }
 
@@ -111,20 +115,6 @@ class BodyLaneWalk : LaneState {
       order_[i] += static_cast<int32_t>(!crosses);
       crosses_[i] = static_cast<int32_t>(crosses);
       marked_[i] = static_cast<int32_t>(crosses) | static_cast<int32_t>(order_[i] > limit_[i]);
-    }
-  }
-
-  void settle() {
-    for (int i = 0; i < active_; ++i) {
-      if (!marked_[i]) continue;
-      if (!ends(i)) continue;
-      while (!launch(i)) {
-        // None left: the last lane moves here, and is settled in its turn.
-        if (--active_ == i) return;
-        move(active_, i);
-        crosses_[i] = crosses_[active_];
-        if (!marked_[i] || !ends(i)) break;
-      }
     }
   }
 
@@ -191,7 +181,6 @@ class BodyLaneWalk : LaneState {
   PathTally& tally_;
   uint64_t to_launch_[WalkStages::count];
   int stage_;
-  int active_ = 0;
   alignas(64) int32_t crosses_[lane_count]{};
 };
 

@@ -81,6 +81,21 @@ struct LaneState {
     }
   }
 
+  /// After a flight: replaces each marked photon that `ends(lane)` by the next that `launch(lane)` puts in
+  /// its lane. Where none is left to launch the last lane moves in (`move(from, to)`) and is settled in its
+  /// turn.
+  template <typename Ends, typename Launch, typename Move>
+  void settle(const Ends& ends, const Launch& launch, const Move& move) {
+    for (int i = 0; i < active_; ++i) {
+      if (!marked_[i] || !ends(i)) continue;
+      while (!launch(i)) {
+        if (--active_ == i) return;
+        move(active_, i);
+        if (!marked_[i] || !ends(i)) break;
+      }
+    }
+  }
+
   void move(int from, int to) {
     x_[to] = x_[from], y_[to] = y_[from], z_[to] = z_[from];
     u_[to] = u_[from], v_[to] = v_[from], w_[to] = w_[from];
@@ -95,6 +110,7 @@ struct LaneState {
   alignas(64) float u_[lane_count]{}, v_[lane_count]{}, w_[lane_count]{};  // direction
   alignas(64) int32_t order_[lane_count]{}, limit_[lane_count]{}, stage_of_[lane_count]{},
       marked_[lane_count]{};
+  int active_ = 0;
 };
 
 }  // namespace alabaster

@@ -27,7 +27,8 @@ class LaneWalk : LaneState {
       const int lanes = (active_ + vector_width - 1) / vector_width * vector_width;
       scatter(static_cast<float>(medium_.g), lanes);
       fly(lanes);
-      settle();
+      settle([this](int i) { return ends(i); }, [this](int i) { return launch(i); },
+             [this](int from, int to) { move(from, to); });
       if (tally_.has_normal_view()) look_up();
       collisions_ += static_cast<uint64_t>(active_);
     }
@@ -56,7 +57,7 @@ class LaneWalk : LaneState {
   }
 
   // A free flight, reflected at the boundary: below the critical cosine that is all; above it the lane is
-  // marked and left at z < 0 for settle() to decide. By the flight's lack of memory it goes on beyond the
+  // marked and left at z < 0 for ends() to decide. By the flight's lack of memory it goes on beyond the
   // reflection.
   void fly(int lanes) {
     const auto critical = static_cast<float>(std::sqrt(1 - 1 / (medium_.eta * medium_.eta)));
@@ -70,20 +71,6 @@ class LaneWalk : LaneState {
       w_[i] = mirrored ? -w : w;
       order_[i] += 1;
       marked_[i] = static_cast<int32_t>(may_leave) | static_cast<int32_t>(order_[i] > limit_[i]);
-    }
-  }
-
-  // The rare events: Fresnel decisions, exits, photons stopped at their stage's limit.
-  void settle() {
-    for (int i = 0; i < active_; ++i) {
-      if (!marked_[i]) continue;
-      if (!ends(i)) continue;
-      while (!launch(i)) {
-        // None left: the last lane moves here, and is settled in its turn.
-        if (--active_ == i) return;
-        move(active_, i);
-        if (!marked_[i] || !ends(i)) break;
-      }
     }
   }
 
@@ -105,6 +92,7 @@ class LaneWalk : LaneState {
       if (marked_[i]) tally_.add_normal_view(order_[i], double{x_[i]} * x_[i] + double{y_[i]} * y_[i]);
   }
 
+  // The rare events: Fresnel decisions, exits, photons stopped at their stage's limit.
   bool ends(int i) {
     if (z_[i] < 0) {
       const double cosine = -static_cast<double>(w_[i]);
@@ -128,7 +116,6 @@ class LaneWalk : LaneState {
   uint64_t collisions_ = 0;
   uint64_t to_launch_[WalkStages::count];
   int stage_ = WalkStages::count - 1;
-  int active_ = 0;
 };
 
 }  // namespace

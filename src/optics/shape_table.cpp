@@ -1,7 +1,5 @@
 #include "optics/shape_table.h"
 
-#include <cstring>
-
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "optics/table_archive.h"
@@ -10,7 +8,7 @@ namespace alabaster {
 
 namespace {
 
-constexpr char magic[8] = {'A', 'L', 'A', 'B', 'S', 'H', 'A', 'P'};
+constexpr TableFrame frame{{'A', 'L', 'A', 'B', 'S', 'H', 'A', 'P'}, ShapeTable::version, "table of shapes"};
 
 template <typename Archive, typename Table>
 void transfer(Archive& archive, Table& table) {
@@ -26,32 +24,12 @@ void transfer(Archive& archive, Table& table) {
 }  // namespace
 
 std::string encode_shape_table(const ShapeTable& table) {
-  TableWriter writer;
-  writer.raw(magic, sizeof magic);
-  writer.field(ShapeTable::version);
-  transfer(writer, table);
-  writer.field(fnv1a(writer.bytes()));
-  return std::move(writer.bytes());
+  return encode_framed(frame, [&](TableWriter& writer) { transfer(writer, table); });
 }
 
 ShapeTable decode_shape_table(std::span<const char> bytes, const std::string& name) {
-  if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-    throw InputError(name, "not a table of shapes of Alabaster");
-  TableReader reader(bytes, name);
-  char found[sizeof magic];
-  uint32_t version = 0;
-  reader.raw(found, sizeof found);
-  reader.field(version);
-  if (version != ShapeTable::version)
-    throw InputError(name, "table of shapes of version " + std::to_string(version) +
-                               ", this program reads version " + std::to_string(ShapeTable::version) +
-                               "; bake it again");
   ShapeTable table;
-  transfer(reader, table);
-  uint64_t checksum = 0;
-  reader.field(checksum);
-  if (reader.left() != 0 || checksum != fnv1a(bytes.first(bytes.size() - sizeof checksum)))
-    throw InputError(name, "the table of shapes was altered (its checksum does not match); bake it again");
+  decode_framed(frame, bytes, name, [&](TableReader& reader) { transfer(reader, table); });
   for (int f = 0; f < ShapeGrid::family_count; ++f) {
     const int nodes = ShapeGrid::nodes(static_cast<ShapeFamily>(f));
     if (table.log2_factor[static_cast<std::size_t>(f)].size() !=

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -13,7 +12,7 @@ namespace alabaster {
 
 namespace {
 
-constexpr char magic[8] = {'A', 'L', 'A', 'B', 'P', 'R', 'O', 'F'};
+constexpr TableFrame frame{{'A', 'L', 'A', 'B', 'P', 'R', 'O', 'F'}, TableData::version, "profile table"};
 
 template <typename Archive, typename Table>
 void transfer(Archive& archive, Table& table) {
@@ -56,32 +55,12 @@ double AlbedoRows::albedo(double position) {
 }
 
 std::string encode_table(const TableData& table) {
-  TableWriter writer;
-  writer.raw(magic, sizeof magic);
-  writer.field(TableData::version);
-  transfer(writer, table);
-  writer.field(fnv1a(writer.bytes()));
-  return std::move(writer.bytes());
+  return encode_framed(frame, [&](TableWriter& writer) { transfer(writer, table); });
 }
 
 TableData decode_table(std::span<const char> bytes, const std::string& name) {
-  TableReader reader(bytes, name);
-  char found[sizeof magic];
-  uint32_t version = 0;
-  if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
-    throw InputError(name, "not a profile table of Alabaster");
-  reader.raw(found, sizeof found);
-  reader.field(version);
-  if (version != TableData::version)
-    throw InputError(name, "profile table of version " + std::to_string(version) +
-                               ", this program reads version " + std::to_string(TableData::version) +
-                               "; bake it again");
   TableData table;
-  transfer(reader, table);
-  uint64_t checksum = 0;
-  reader.field(checksum);
-  if (reader.left() != 0 || checksum != fnv1a(bytes.first(bytes.size() - sizeof checksum)))
-    throw InputError(name, "the profile table was altered (its checksum does not match); bake it again");
+  decode_framed(frame, bytes, name, [&](TableReader& reader) { transfer(reader, table); });
   const std::size_t rows = AlbedoRows::count;
   if (table.reflectance_over_albedo.size() != rows || table.reflectance_standard_error.size() != rows ||
       table.log2_density.size() != rows * RadialBins::inner ||

@@ -183,4 +183,9 @@ void write_chart_png(const fs::path& path, const Chart& chart) {
   write_text_atomically(path, draw(chart, "png"));
 }
 
+void write_chart_files(const fs::path& stem, const Chart& chart) {
+  write_chart_svg(stem.string() + ".svg", chart);
+  write_chart_png(stem.string() + ".png", chart);
+}
+
 }  // namespace alabaster

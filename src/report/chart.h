@@ -30,6 +30,8 @@ std::string chart_svg(const Chart& chart);
 /// Write the file whole or not at all.
 void write_chart_svg(const std::filesystem::path& path, const Chart& chart);
 void write_chart_png(const std::filesystem::path& path, const Chart& chart);
+/// Both, as STEM.svg and STEM.png.
+void write_chart_files(const std::filesystem::path& stem, const Chart& chart);
 
 /// The gnuplot script of a chart with its data, as it is run: terminal is "svg" or "png".
 std::string gnuplot_script(const Chart& chart, const std::string& terminal,

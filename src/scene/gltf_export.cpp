@@ -75,25 +75,22 @@ class Exporter {
 
   template <class Vector>
   int add_vertices(const std::vector<Vector>& values, int type) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView =
-        add_view(values.data(), values.size() * sizeof(Vector), TINYGLTF_TARGET_ARRAY_BUFFER);
-    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
-    accessor.type = type;
-    accessor.count = values.size();
-    model_.accessors.push_back(accessor);
-    return static_cast<int>(model_.accessors.size() - 1);
+    return add_accessor(values, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT, type);
   }
 
   template <class Index>
   int add_indices(const std::vector<uint32_t>& indices, int component) {
-    const std::vector<Index> narrowed(indices.begin(), indices.end());
+    return add_accessor(std::vector<Index>(indices.begin(), indices.end()),
+                        TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER, component, TINYGLTF_TYPE_SCALAR);
+  }
+
+  template <class Element>
+  int add_accessor(const std::vector<Element>& values, int target, int component, int type) {
     tinygltf::Accessor accessor;
-    accessor.bufferView =
-        add_view(narrowed.data(), narrowed.size() * sizeof(Index), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    accessor.bufferView = add_view(values.data(), values.size() * sizeof(Element), target);
     accessor.componentType = component;
-    accessor.type = TINYGLTF_TYPE_SCALAR;
-    accessor.count = narrowed.size();
+    accessor.type = type;
+    accessor.count = values.size();
     model_.accessors.push_back(accessor);
     return static_cast<int>(model_.accessors.size() - 1);
   }

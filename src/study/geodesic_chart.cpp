@@ -242,8 +242,7 @@ void chart_geodesics(const GeodesicChartOptions& options) {
                   options.seed));
   for (const Surface& surface : surfaces()) {
     const Chart chart = chart_of(surface, rows);
-    write_chart_svg(options.output / ("geodesic_" + surface.name + ".svg"), chart);
-    write_chart_png(options.output / ("geodesic_" + surface.name + ".png"), chart);
+    write_chart_files(options.output / ("geodesic_" + surface.name), chart);
     report.heading(surface.name + ": " + surface.description);
     report.chart(chart, "error over time per query of every method on the " + surface.name);
     report.table(table_of(surface.name, rows));

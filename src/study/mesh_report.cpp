@@ -150,10 +150,7 @@ void add_mesh_sections(HtmlReport& report, const ValidationResult& result) {
       "closest point of the surface. Light that was reflected at the surface or crossed it without "
       "scattering is left "
       "out of images and errors; the environment is hidden.");
-  std::vector<std::string> skipped;
-  for (const MeshSceneResult& scene : result.meshes)
-    if (!scene.skipped.empty()) skipped.push_back("Left out: " + scene.skipped);
-  if (!skipped.empty()) report.list(skipped);
+  list_left_out(report, result.meshes);
   if (table_head(result, {}).empty()) return;
   error_tables(report, result);
   cause_tables(report, result);

@@ -25,6 +25,15 @@ std::string percent_with_interval(double value, double interval);
 /// The mean absolute log ratio, with a remark where it is known for too few pixels to be used.
 std::string log_ratio_text(const Metrics& metrics);
 
+/// The reasons, in their member `skipped`, why some of the scenes are not in the report.
+template <typename Scenes>
+void list_left_out(HtmlReport& report, const Scenes& scenes) {
+  std::vector<std::string> reasons;
+  for (const auto& scene : scenes)
+    if (!scene.skipped.empty()) reasons.push_back("Left out: " + scene.skipped);
+  if (!reasons.empty()) report.list(reasons);
+}
+
 /// The column (from 1) of a table's row with the least value.
 std::size_t best_column(const std::vector<double>& values, std::size_t first_column);
 

@@ -129,10 +129,7 @@ HtmlReport page(const ChartResult& result, const ChartOptions& options) {
       "the Pareto front: what is the best for its time. `volume` is the reference's own method with few "
       "samples, `walk` "
       "the same with the albedo of the point that is seen, as production renderers have it.");
-  std::vector<std::string> skipped;
-  for (const ChartScene& scene : result.scenes)
-    if (!scene.skipped.empty()) skipped.push_back("Left out: " + scene.skipped);
-  if (!skipped.empty()) report.list(skipped);
+  list_left_out(report, result.scenes);
   for (const ChartScene& scene : result.scenes)
     if (!scene.rows.empty()) scene_section(report, scene);
   return report;
@@ -150,8 +147,7 @@ void write_chart_result(const ChartResult& result, const ChartOptions& options) 
   for (const ChartScene& scene : result.scenes) {
     if (scene.rows.empty()) continue;
     const Chart chart = chart_of(scene);
-    write_chart_svg(options.output / (file_name_of(scene.name) + ".svg"), chart);
-    write_chart_png(options.output / (file_name_of(scene.name) + ".png"), chart);
+    write_chart_files(options.output / file_name_of(scene.name), chart);
   }
   page(result, options).write(options.output / "chart.html");
 }

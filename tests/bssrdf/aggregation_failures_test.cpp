@@ -5,11 +5,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "bssrdf/aggregation_kernel.h"
 #include "bssrdf/body.h"
 #include "geometry/shapes.h"
+#include "support/uv_meshes.h"
 #include "texture/material_map.h"
 #include "texture/seam_gutters.h"
 #include "texture/solid_texture.h"
@@ -21,12 +21,6 @@ using namespace alabaster;
 namespace {
 
 constexpr int side = 128;
-
-std::vector<uint32_t> all_triangles(const TriangleMesh& mesh) {
-  std::vector<uint32_t> all(mesh.triangle_count());
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
 
 std::unique_ptr<AlbedoField> in_space(const TriangleMesh& mesh, std::unique_ptr<AlbedoField> field,
                                       double finest) {

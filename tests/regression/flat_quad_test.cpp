@@ -1,14 +1,13 @@
 // The surface integrator on a flat quad somewhere in space is the planar integrator.
 
 #include <catch2/catch.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "bssrdf/placements.h"
 #include "geometry/shapes.h"
 #include "integrators/planar.h"
 #include "integrators/render.h"
 #include "integrators/surface.h"
-#include "study/scene_recipe.h"
+#include "support/planar_in_space.h"
 #include "support/planar_scenes.h"
 #include "support/z_test.h"
 #include "texture/material_map.h"
@@ -17,42 +16,14 @@ using namespace alabaster;
 
 namespace {
 
-// Where the quad lies: rotated, scaled by 0.03 and moved.
-struct Place {
-  double scale = 0.03;
-  Mat3 rotation = Mat3(glm::rotate(Mat4(1), 0.9, glm::normalize(Vec3(1, 2, -0.5))));
-  Vec3 origin{0.4, -1.1, 2.3};
-
-  Vec3 point(Vec3 p) const { return origin + scale * (rotation * p); }
-};
-
 struct QuadScene {
-  PlanarScene planar = coloured_planar_scene();
+  PlanarScene planar;
   Place place;
   Scene scene;
 
-  QuadScene() {
+  QuadScene() : planar(coloured_planar_scene()) {
     planar.tile = Vec2(10);
-    SceneRecipe recipe;
-    recipe.id = "quad";
-    RecipePart part;
-    part.name = "quad";
-    part.mesh = make_plane(10, 6);
-    for (Vec3& p : part.mesh.positions) p = place.point(p);
-    for (Vec3f& n : part.mesh.normals) n = Vec3f(place.rotation * Vec3(n));
-    part.medium = planar.medium;
-    part.medium->mean_free_path *= place.scale;
-    part.texture = planar.albedo;
-    part.meaning = AlbedoSource::Meaning::albedo;
-    part.roughness = 0;
-    recipe.parts.push_back(part);
-    recipe.sky.ambient = recipe.sky.key = Rgb(0);
-    recipe.lights.push_back(PatchLight{place.origin, planar.light.radius * place.scale, Rgb(1)});
-    recipe.camera.position = place.point(Vec3(0, 0, 3));
-    recipe.camera.direction = place.rotation * Vec3(0, 0, -1);
-    recipe.camera.up = place.rotation * Vec3(0, 1, 0);
-    recipe.camera.orthographic_height = planar.view.size.y * place.scale;
-    scene = build_scene(std::move(recipe));
+    scene = planar_in_space(planar, make_plane(10, 6), place);
   }
 
   /// The surface point of the mesh at a place of the plane.

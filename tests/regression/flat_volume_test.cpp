@@ -1,48 +1,25 @@
 // The volumetric reference on a flat sheet somewhere in space is the volumetric reference of the half-space.
 
 #include <catch2/catch.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "geometry/shapes.h"
 #include "integrators/planar_volume.h"
 #include "integrators/render.h"
 #include "integrators/surface.h"
-#include "study/scene_recipe.h"
 #include "study/scene_sets.h"
+#include "support/planar_in_space.h"
 #include "support/z_test.h"
 
 using namespace alabaster;
 
 namespace {
 
-// The plane of a flat scene, 110 mean free paths wide, as a sheet that was rotated, shrunk and moved.
+// The plane of a flat scene, 110 mean free paths wide, as a sheet in space.
 Scene sheet_in_space(const PlanarScene& planar) {
-  const double scale = 0.03;
-  const Mat3 rotation = Mat3(glm::rotate(Mat4(1), 0.9, glm::normalize(Vec3(1, 2, -0.5))));
-  const auto place = [&](const Vec3& p) { return Vec3(0.4, -1.1, 2.3) + scale * (rotation * p); };
-
-  SceneRecipe recipe;
-  recipe.id = "sheet";
-  RecipePart part;
-  part.name = "sheet";
-  part.mesh = make_plane(110, 11);
-  auto& uvs = part.mesh.uv_sets.at(0);
-  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = Vec2f(planar.uv(Vec2(part.mesh.positions[i])));
-  for (Vec3& p : part.mesh.positions) p = place(p);
-  for (Vec3f& n : part.mesh.normals) n = Vec3f(rotation * Vec3(n));
-  part.medium = planar.medium;
-  part.medium->mean_free_path *= scale;
-  part.texture = planar.albedo;
-  part.meaning = AlbedoSource::Meaning::albedo;
-  part.roughness = 0;
-  recipe.parts.push_back(part);
-  recipe.sky.ambient = recipe.sky.key = Rgb(0);
-  recipe.lights.push_back(PatchLight{place(Vec3(0)), planar.light.radius * scale, Rgb(1)});
-  recipe.camera.position = place(Vec3(0, 0, 3));
-  recipe.camera.direction = rotation * Vec3(0, 0, -1);
-  recipe.camera.up = rotation * Vec3(0, 1, 0);
-  recipe.camera.orthographic_height = planar.view.size.y * scale;
-  return build_scene(std::move(recipe));
+  TriangleMesh sheet = make_plane(110, 11);
+  auto& uvs = sheet.uv_sets.at(0);
+  for (std::size_t i = 0; i < uvs.size(); ++i) uvs[i] = Vec2f(planar.uv(Vec2(sheet.positions[i])));
+  return planar_in_space(planar, std::move(sheet));
 }
 
 // Of the difference of the sums over all pixels: sees a small error of brightness that no pixel shows.

@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "core/frame.h"
 #include "core/rng.h"
 #include "geometry/shapes.h"
+#include "support/uv_meshes.h"
 #include "texture/material_map.h"
 #include "texture/solid_texture.h"
 
@@ -15,12 +15,6 @@ using namespace alabaster;
 namespace {
 
 constexpr int side = 256;
-
-std::vector<uint32_t> all_triangles(const TriangleMesh& mesh) {
-  std::vector<uint32_t> all(mesh.triangle_count());
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
 
 /// A textured mesh with its gutters filled.
 struct Textured {
