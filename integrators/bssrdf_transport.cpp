@@ -49,6 +49,7 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
 
 std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3&,
                                                        const Sampler& sampler, uint32_t occurrence) const {
+  probe_->fetch(exit.triangle);
   const auto entry = probe_->sample_entry(model_->medium().point(exit), sampler, occurrence);
   if (!entry || entry->weight.is_black()) return std::nullopt;
   return SubsurfaceEntry{entry->point.surface, std::nullopt, entry->weight * lobe_};

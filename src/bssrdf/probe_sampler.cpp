@@ -171,6 +171,11 @@ Rgb ProbeSampler::typical_albedo(const BssrdfPoint& exit) const {
   return unpack(packed);
 }
 
+void ProbeSampler::fetch(uint32_t triangle) const {
+  __builtin_prefetch(&facing_[triangle]);
+  if (!typical_.empty()) __builtin_prefetch(&typical_[triangle]);
+}
+
 std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
   const Rgb typical = typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
@@ -351,6 +356,8 @@ void ProbeSampler::draw(const Exit& exit, const EntryRandom& u, std::vector<Cand
   static thread_local std::vector<Hit> hits;
   const auto add = [&](uint32_t triangle, Vec2 barycentric) {
     if (!in_medium(triangle)) return;
+    // Side by side, so that one waits for memory while the other does.
+    const PointShape shape = model_.medium().shape_at(triangle, barycentric);
     const SurfacePoint surface = target_.mesh->surface_point(triangle, barycentric);
     const double distance = glm::distance(surface.position, exit.point.surface.position);
     if (!(distance > 0)) return;
@@ -359,7 +366,7 @@ void ProbeSampler::draw(const Exit& exit, const EntryRandom& u, std::vector<Cand
     candidate.surface.object = target_.object;
     candidate.density = density(exit, surface);
     candidate.albedo = model_.medium().albedo->at(candidate.surface);
-    candidate.shape = model_.medium().shape_at(triangle, barycentric);
+    candidate.shape = shape;
     candidate.importance = importance(exit, candidate, distance);
   };
   Vec2 choice = u.choice;
@@ -420,8 +427,10 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, 
   std::size_t k = 0;
   while (k + 1 < candidates.size() && left >= candidates[k].importance) left -= candidates[k++].importance;
   // The less it should be worth, the more seldom it is worth evaluating S_V and the light there; the part of
-  // the random number left over decides.
-  const double survival = std::min(1.0, worth / full_worth);
+  // the random number left over decides. Where nothing is known of the light, what comes through a body from
+  // a lamp behind it may be worth more than it seems.
+  const bool known = !body_light_ || target_.light != nullptr;
+  const double survival = known ? std::min(1.0, worth / full_worth) : 1;
   if (survival < 1 && left >= survival * candidates[k].importance) return std::nullopt;
   return finish(*exit, candidates[k], worth / (candidates[k].importance * survival));
 }

@@ -95,6 +95,8 @@ class ProbeSampler {
     Rgb typical;             // the albedo that draws are aimed at
     double usual_light = 1;  // that entries are expected to get
   };
+  /// Asks memory for what prepare() will read of an exit on that triangle.
+  void fetch(uint32_t triangle) const;
   /// Nothing where no light can leave, because the albedo is 0.
   std::optional<Exit> prepare(const BssrdfPoint& exit) const;
 
