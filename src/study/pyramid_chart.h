@@ -47,7 +47,8 @@ struct PyramidChartOptions {
 /// the mesh under a Gaussian of the geodesic distance.
 PyramidMeasurements measure_pyramids(const PyramidChartOptions& options);
 
-/// Measures and writes chart.json, pyramid_errors_PATTERN.svg, pyramid_lookups.svg and chart.html.
+/// Measures and writes chart.json, pyramid_errors_PATTERN and pyramid_lookups as .svg and .png, and
+/// chart.html.
 void chart_pyramids(const PyramidChartOptions& options);
 
 }  // namespace alabaster

@@ -123,13 +123,13 @@ void chart_pyramids(const PyramidChartOptions& options) {
           options.seed));
   for (const std::string& pattern : patterns(m)) {
     const Chart chart = error_chart(m, pattern);
-    write_chart_svg(options.output / ("pyramid_errors_" + pattern + ".svg"), chart);
+    write_chart_files(options.output / ("pyramid_errors_" + pattern), chart);
     report.heading("Errors: " + pattern);
     report.chart(chart, "worst error of every method over the width of the Gaussian, " + pattern);
     report.table(error_table(m, pattern));
   }
   const Chart costs = cost_chart(m);
-  write_chart_svg(options.output / "pyramid_lookups.svg", costs);
+  write_chart_files(options.output / "pyramid_lookups", costs);
   report.heading("Costs");
   report.chart(costs, "CPU time per lookup of every method over the width of the Gaussian");
   report.table(cost_table(m));

@@ -3,9 +3,9 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "integrators/scene_builder.h"
+#include "support/uv_meshes.h"
 #include "texture/coverage.h"
 
 using namespace alabaster;
@@ -36,9 +36,7 @@ TriangleMesh shattered(TriangleMesh mesh) {
 std::shared_ptr<const Texture> painted(const TriangleMesh& mesh, const Vec3f& colour) {
   auto texels = std::make_shared<TexelArray>();
   *texels = {side, side, std::vector<Vec4f>(std::size_t{side} * side, Vec4f(1, 0, 1, 1))};
-  std::vector<uint32_t> triangles(mesh.triangle_count());
-  std::iota(triangles.begin(), triangles.end(), 0u);
-  for_each_covered_texel(mesh, triangles, {}, side, side,
+  for_each_covered_texel(mesh, all_triangles(mesh), {}, side, side,
                          [&](std::size_t i, uint32_t, Vec2) { texels->texels[i] = Vec4f(colour, 1); });
   return std::make_shared<Texture>(texels, TextureMapping{});
 }
