@@ -20,7 +20,7 @@ constexpr uint32_t chunk_size = 1024, most_chunks = 1 << 16;
 constexpr std::size_t cells_per_chunk = 4096;
 constexpr uint32_t most_blocks_per_side = 160;
 // The relative variance that a collision may add to a walk's weight.
-constexpr double tolerated_variance = 0.03;
+constexpr double tolerated_variance = 0.015;
 constexpr double least_exactness = 1.0 / 16;
 // A constant guess that adds less than this share of it needs no map.
 constexpr double worth_a_map = 0.03;

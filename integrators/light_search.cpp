@@ -8,9 +8,9 @@ namespace {
 
 // Facets tried before a search is given up.
 constexpr int most_facets = 4;
-// Collisions deeper than this, in mean free paths, do not look for light; shallower ones do less often with
-// depth. What these numbers are changes the noise alone.
-constexpr double look_range = 4;
+// Deeper collisions look for light less often, by this power of e per mean free path; but all of them may,
+// since a light met by chance from where nothing looks for it would count in full, and be a firefly. What the
+// number is changes the noise alone.
 constexpr double look_decay = 0.7;
 
 // Snell's law backwards: the direction inside that leaves through a facet towards `outside`.
@@ -33,7 +33,15 @@ Rgb VolumeWalk::weight_of(const Vertex& vertex, const Crossing& crossing, double
                        (1 - fresnel_dielectric(cos_inside, 1 / medium_.eta));
   // d(outside) / d(inside) of a refraction through a plane.
   const double spread = cos_outside > 0 ? medium_.eta * medium_.eta * cos_inside / cos_outside : 0;
-  const double density = value * mixture(vertex.weight, passed) + vertex.probability * light_pdf * spread;
+  Rgb drawn = passed;
+  if (vertex.guide != nullptr) {
+    const double before = glm::dot(vertex.direction, vertex.normal);
+    const double towards = glm::dot(crossing.inside, vertex.normal);
+    const SteeredFlight flight{false, vertex.guide->phi(towards) / vertex.guide->mean_phi(before),
+                               1 - vertex.guide->kappa() * towards};
+    drawn = passed * steered_density(flight, crossing.distance, false);
+  }
+  const double density = value * mixture(vertex.weight, drawn) + vertex.probability * light_pdf * spread;
   return density > 0 ? vertex.weight * passed * (value / density) : Rgb();
 }
 
@@ -44,8 +52,9 @@ void VolumeWalk::look_for_light(State& state, Rng& rng) const {
   vertex.normal = state.normal;
   vertex.depth = state.depth;
   vertex.weight = state.weight;
+  vertex.guide = state.guide;
   const double depth = state.depth * sigma_t_.mean();
-  vertex.probability = depth < look_range ? std::exp(-look_decay * depth) : 0;
+  vertex.probability = std::exp(-look_decay * depth);
   if (rng.uniform() >= vertex.probability) return;
   const auto light = guide_->sample(vertex.position, vertex.normal, rng);
   if (!light) return;

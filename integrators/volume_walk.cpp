@@ -1,8 +1,28 @@
+#include <algorithm>
+#include <limits>
+
 #include "integrators/volume_walk_state.h"
 #include "optics/fresnel.h"
 #include "optics/photon_walk.h"
 
 namespace alabaster {
+
+namespace {
+
+// Walks that carry less than this are ended by Russian roulette.
+constexpr double least_weight = 0.25;
+// Steered ones: less than this share of what is typical, weighed by the importance of their depth.
+constexpr double least_share = 0.5;
+// Points at which the texture is read to learn how dark it is.
+constexpr int darkness_samples = 1024;
+
+double darkness(const Rgb& albedo) {
+  return (DepthGuides::darkness(albedo.r) + DepthGuides::darkness(albedo.g) +
+          DepthGuides::darkness(albedo.b)) /
+         3;
+}
+
+}  // namespace
 
 VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t object,
                        std::vector<uint8_t> boundary, const Medium& medium, const AlbedoField& albedo,
@@ -16,18 +36,47 @@ VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t 
       grey_(sigma_t_.is_grey()),
       albedo_(albedo),
       options_(options),
-      guide_(options.guided && density == nullptr ? guide : nullptr),
+      guide_(options.look_for_light && density == nullptr ? guide : nullptr),
       density_(density) {
   const BoundingBox box = bounding_box(mesh);
   slack_ = 0x1p-20 * std::max(glm::length(box.low), glm::length(box.high));
   // With the exit's albedo the cells tell where the surface is, for the guide.
   const bool reads_texture = options.albedo == WalkAlbedo::closest_point;
   if (density != nullptr) return;  // every collision asks exactly
-  if (options.closest_point == ClosestPointMode::cached && (reads_texture || guide_ != nullptr))
+  if (options.closest_point == ClosestPointMode::cached &&
+      (reads_texture || guide_ != nullptr || options.steered))
     cells_ = std::make_unique<AlbedoCells>(rays, mesh, object, reads_texture ? &albedo : nullptr,
                                            medium.mean_free_path.mean());
   else if (!reads_texture)
     guide_ = nullptr;
+  if (options.steered && (reads_texture || cells_)) prepare_guides();
+}
+
+void VolumeWalk::prepare_guides() {
+  double area = 0, volume = 0;
+  std::vector<double> areas_up_to;
+  for (uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    const Index3& corner = mesh_.corners[t];
+    areas_up_to.push_back(area += mesh_.area(t));
+    volume += glm::dot(mesh_.positions[corner[0]],
+                       glm::cross(mesh_.positions[corner[1]], mesh_.positions[corner[2]])) /
+              6;
+  }
+  const double radius = options_.open_sheets ? std::numeric_limits<double>::infinity()
+                                             : 3 * std::abs(volume) / area * sigma_t_.mean();
+  depth_guides_.emplace(medium_.g, radius);
+  for (int k = 0; k < darkness_samples; ++k) {
+    const double u = (k + 0.5) / darkness_samples * area;
+    const auto found = std::upper_bound(areas_up_to.begin(), areas_up_to.end() - 1, u);
+    const auto triangle = static_cast<uint32_t>(found - areas_up_to.begin());
+    darkness_ += darkness(albedo_.at(mesh_.surface_point(triangle, Vec2(1.0 / 3)))) / darkness_samples;
+  }
+}
+
+const DepthGuides::Column* VolumeWalk::choose_guides(const State& state) const {
+  if (!depth_guides_) return nullptr;
+  return &depth_guides_->column(options_.albedo == WalkAlbedo::exit ? darkness(state.exit_albedo)
+                                                                    : darkness_);
 }
 
 std::optional<VolumeWalkExit> VolumeWalk::walk(const SurfacePoint& start, const Vec3& direction,
@@ -38,6 +87,8 @@ std::optional<VolumeWalkExit> VolumeWalk::walk(const SurfacePoint& start, const 
   state.triangle = start.triangle;
   state.reach = 0;
   if (options_.albedo == WalkAlbedo::exit) state.exit_albedo = albedo_.at(start);
+  state.guides = choose_guides(state);
+  begin_flight(state, start.geometric_normal, rng);
   while (advance(state, rng) && !state.left) {
   }
   std::optional<VolumeWalkExit> result;
@@ -66,7 +117,8 @@ int choose_channel(const Rgb& weight, Rng& rng) {
 
 bool VolumeWalk::advance(State& state, Rng& rng) const {
   const int channel = grey_ ? 0 : choose_channel(state.weight, rng);
-  const double flight = sample_free_flight(rng) / sigma_t_[channel];
+  const double rate = sigma_t_[channel] * (state.flight.steered ? state.flight.stretch : 1);
+  const double flight = sample_free_flight(rng) / rate;
   std::optional<Hit> hit;
   if (flight >= state.clearance) {
     Ray ray{state.position, state.direction, 0, flight};
@@ -75,19 +127,60 @@ bool VolumeWalk::advance(State& state, Rng& rng) const {
     ++state.rays;
   }
   const double travelled = hit ? std::max(0.0, hit->t) : flight;
-  if (!grey_) {
-    const Rgb passed = attenuation(sigma_t_, travelled);
-    const Rgb density = hit ? passed : sigma_t_ * passed;
-    // Balance heuristic over the channels' flights.
-    const double drawn = mixture(state.weight, density);
-    state.weight = drawn > 0 ? state.weight * density / drawn : Rgb();
-  }
+  weigh_flight(state, travelled, !hit);
   state.position += travelled * state.direction;
   state.clearance = std::max(0.0, state.clearance - travelled);
   state.reach += travelled;
   if (hit) return meet_boundary(state, *hit, rng);
   state.triangle = no_index;
   return collide(state, rng);
+}
+
+// Balance heuristic over the channels' flights, steered and plain.
+void VolumeWalk::weigh_flight(State& state, double travelled, bool collides) const {
+  if (grey_) {
+    if (state.guide != nullptr) state.weight /= state.flight.density(sigma_t_.r * travelled, collides);
+    return;
+  }
+  const Rgb passed = attenuation(sigma_t_, travelled);
+  const Rgb value = collides ? sigma_t_ * passed : passed;
+  const double drawn =
+      mixture(state.weight,
+              state.guide == nullptr ? value : value * steered_density(state.flight, travelled, collides));
+  state.weight = drawn > 0 ? state.weight * value / drawn : Rgb();
+}
+
+Rgb VolumeWalk::steered_density(const SteeredFlight& flight, double travelled, bool collides) const {
+  if (grey_) return Rgb(flight.density(sigma_t_.r * travelled, collides));
+  Rgb density;
+  for (int c = 0; c < 3; ++c) density[c] = flight.density(sigma_t_[c] * travelled, collides);
+  return density;
+}
+
+// Along a direction that was not drawn.
+void VolumeWalk::begin_flight(State& state, const Vec3& normal, Rng& rng) const {
+  state.flight = {};
+  if (state.guides == nullptr) return;
+  state.guide = state.guides->at(0).guide;
+  if (state.guide == nullptr) return;
+  state.flight.steered = rng.uniform() < SteeredFlight::share;
+  state.flight.stretch = 1 - state.guide->kappa() * glm::dot(state.direction, normal);
+}
+
+void VolumeWalk::scatter(State& state, Rng& rng) const {
+  if (state.guide == nullptr) {
+    state.flight = {};
+    state.direction = alabaster::scatter(state.direction, medium_.g, rng);
+    return;
+  }
+  const double mean_phi = state.guide->mean_phi(glm::dot(state.direction, state.normal));
+  SteeredFlight& flight = state.flight;
+  flight.steered = rng.uniform() < SteeredFlight::share;
+  state.direction = flight.steered ? state.guide->scatter(state.direction, state.normal, rng)
+                                   : alabaster::scatter(state.direction, medium_.g, rng);
+  const double towards = glm::dot(state.direction, state.normal);
+  flight.turn = state.guide->phi(towards) / mean_phi;
+  flight.stretch = 1 - state.guide->kappa() * towards;
 }
 
 bool VolumeWalk::collide(State& state, Rng& rng) const {
@@ -104,13 +197,18 @@ bool VolumeWalk::collide(State& state, Rng& rng) const {
   ++state.order;
   if (!albedo) return ++state.lost, false;
   state.weight *= *albedo;
-  const double survival = magnitude(state.weight).max() * 4;
+  double survival = magnitude(state.weight).max() / least_weight;
+  if (state.guides != nullptr) {
+    const DepthGuides::Choice& choice = state.guides->at(state.depth * sigma_t_.mean());
+    state.guide = choice.guide;
+    survival *= choice.importance * (least_weight / (least_share * state.guides->typical_weight()));
+  }
   if (survival < 1) {
     if (rng.uniform() >= survival) return false;
     state.weight /= survival;
   }
   if (guide_ != nullptr) look_for_light(state, rng);
-  state.direction = scatter(state.direction, medium_.g, rng);
+  scatter(state, rng);
   return true;
 }
 
@@ -174,6 +272,7 @@ bool VolumeWalk::meet_boundary(State& state, const Hit& hit, Rng& rng) const {
   state.reach = 0;
   if (reflected_inside(cosine, medium_.eta, rng)) {
     state.direction -= 2 * cosine * normal;
+    begin_flight(state, normal, rng);
     return true;
   }
   // Snell's law, out of the denser side.

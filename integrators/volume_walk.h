@@ -11,6 +11,7 @@
 #include "geometry/mesh.h"
 #include "geometry/ray_scene.h"
 #include "integrators/albedo_cells.h"
+#include "integrators/depth_guide.h"
 #include "integrators/light_guide.h"
 #include "scene/medium.h"
 #include "texture/albedo_field.h"
@@ -32,8 +33,10 @@ enum class ClosestPointMode {
 struct VolumeWalkOptions {
   WalkAlbedo albedo = WalkAlbedo::closest_point;
   ClosestPointMode closest_point = ClosestPointMode::cached;
-  /// Without, light is found by walks that happen to leave towards it.
-  bool guided = true;
+  /// Without, concentrated light is found by walks that happen to leave towards it.
+  bool look_for_light = true;
+  /// Directions and flights lead towards the surface more often than by chance.
+  bool steered = true;
   /// An open mesh counts as the front of a medium that fills all space behind it; without, it is refused.
   bool open_sheets = false;
   /// Paths are cut after this many collisions; what is lost is counted. A guard against endless loops at
@@ -86,6 +89,13 @@ class VolumeWalk {
   struct Candidate;
   struct State;
   bool advance(State& state, Rng& rng) const;
+
+  void prepare_guides();
+  const DepthGuides::Column* choose_guides(const State& state) const;
+  void begin_flight(State& state, const Vec3& normal, Rng& rng) const;
+  void scatter(State& state, Rng& rng) const;
+  void weigh_flight(State& state, double travelled, bool collides) const;
+  Rgb steered_density(const SteeredFlight& flight, double travelled, bool collides) const;
   bool collide(State& state, Rng& rng) const;
   bool meet_boundary(State& state, const Hit& hit, Rng& rng) const;
 
@@ -113,6 +123,8 @@ class VolumeWalk {
   const LightGuide* guide_;
   const AlbedoField* density_;
   std::unique_ptr<AlbedoCells> cells_;
+  std::optional<DepthGuides> depth_guides_;
+  double darkness_ = 0;  // of the whole surface, see DepthGuides
   mutable Counts counts_;
 };
 

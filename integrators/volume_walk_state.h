@@ -17,6 +17,7 @@ struct VolumeWalk::Vertex {
   double depth = 0;        // m, about
   double probability = 0;  // that light is looked for; a function of the place alone
   Rgb weight;              // of the path, this collision's albedo in it
+  const DepthGuide* guide = nullptr;
 };
 
 /// A straight way from a collision to the outside.
@@ -36,6 +37,9 @@ struct VolumeWalk::Candidate {
 };
 
 struct VolumeWalk::State {
+  const DepthGuides::Column* guides = nullptr;  // null: nothing steers the walk
+  const DepthGuide* guide = nullptr;  // of the last collision or reflection; null: as if nothing did
+  SteeredFlight flight;               // the one to come
   Vec3 position{0}, direction{0};
   uint32_t triangle = no_index;  // the boundary triangle the ray starts on; no_index at a collision
   Rgb weight{1};

@@ -108,8 +108,10 @@ void set_placement(RenderSettings& s, const Value& v) {
 }
 
 void set_guide(RenderSettings& s, const Value& v) {
-  if (v.text != "light" && v.text != "none") v.refuse("is not known; use light or none");
-  s.walk.guided = v.text == "light";
+  if (v.text != "all" && v.text != "light" && v.text != "depth" && v.text != "none")
+    v.refuse("is not known; use all, light, depth or none");
+  s.walk.look_for_light = v.text == "all" || v.text == "light";
+  s.walk.steered = v.text == "all" || v.text == "depth";
 }
 
 void set_open(RenderSettings& s, const Value& v) {
@@ -158,7 +160,7 @@ const std::vector<Option>& options() {
       {{"basis", "NAME", "shape (the default) or half-space", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},
-      {{"guide", "NAME", "of volume and walk: look for light (the default) or none", true}, set_guide},
+      {{"guide", "NAME", "of volume and walk: all (the default), light, depth or none", true}, set_guide},
       {{"open", "NAME", "of volume and walk: refuse open meshes (the default) or take them as a sheet over a half-space", true}, set_open},
       {{"angular_size", "DEGREES", "of point, spot and directional lights; 0: none (surface 0, volume and walk 1)", true},
        [](S& s, const Value& v) { s.angular_size = real(v, 0, 90, "of degrees from 0 to 90"); }},

@@ -200,7 +200,7 @@ TEST_CASE(
         guided.specular = false;
         guided.angular_size = pi / 18;
         SurfaceOptions plain = guided;
-        plain.walk.guided = false;
+        plain.walk.look_for_light = plain.walk.steered = false;
         const Measured a = measure(scene, guided, 10000), b = measure(scene, plain, 40000, 0, 2);
         INFO("eta " << eta << ": " << a.mean << " +- " << a.error << " against " << b.mean << " +- "
                     << b.error);
