@@ -43,12 +43,12 @@ VolumeWalk::VolumeWalk(const RayScene& rays, const TriangleMesh& mesh, uint32_t 
   // With the exit's albedo the cells tell where the surface is, for the guide.
   const bool reads_texture = options.albedo == WalkAlbedo::closest_point;
   if (density != nullptr) return;  // every collision asks exactly
-  if (options.closest_point == ClosestPointMode::cached &&
-      (reads_texture || guide_ != nullptr || options.steered))
+  if (options.closest_point == ClosestPointMode::cached && (reads_texture || guide_ != nullptr))
     cells_ = std::make_unique<AlbedoCells>(rays, mesh, object, reads_texture ? &albedo : nullptr,
                                            medium.mean_free_path.mean());
   else if (!reads_texture)
     guide_ = nullptr;
+  // Where nothing else needs cells they would cost more than steering gains.
   if (options.steered && (reads_texture || cells_)) prepare_guides();
 }
 

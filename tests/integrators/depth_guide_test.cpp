@@ -77,12 +77,12 @@ TEST_CASE("steered walks see what plain walks see, with less noise (z-test at 1e
                                    {make_blob(0.06, 0.2, 48), {Rgb(0.02), -0.3, 1}}}) {
     const Body body(std::move(c.mesh));
     const StripedAlbedo field(body.mesh, 0.02);
-    for (const WalkAlbedo albedo : {WalkAlbedo::closest_point, WalkAlbedo::exit}) {
+    for (const ClosestPointMode mode : {ClosestPointMode::cached, ClosestPointMode::exact}) {
       VolumeWalkOptions steered, plain;
-      steered.albedo = plain.albedo = albedo;
+      steered.closest_point = plain.closest_point = mode;
       plain.steered = false;
-      const Returned a = returned(body, walk_in(body, c.medium, field, steered), 20000, 33);
-      const Returned b = returned(body, walk_in(body, c.medium, field, plain), 30000, 34);
+      const Returned a = returned(body, walk_in(body, c.medium, field, steered), 15000, 33);
+      const Returned b = returned(body, walk_in(body, c.medium, field, plain), 15000, 34);
       for (int k = 0; k < 3; ++k) {
         const RunningMoments &m = a.scattered[k], &n = b.scattered[k];
         INFO("channel " << k << ": " << m.mean() << " +- " << m.standard_error() << " against " << n.mean()
