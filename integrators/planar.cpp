@@ -12,15 +12,37 @@ namespace alabaster {
 
 PlanarAlbedo::PlanarAlbedo(const PlanarScene& scene)
     : pyramid_(*scene.albedo, {}, Wrap::repeat, Wrap::repeat),
+      planes_(*scene.albedo),
       square_texels_(std::abs(scene.tile.x * scene.albedo->height - scene.tile.y * scene.albedo->width) <
                      1e-9 * scene.tile.x * scene.albedo->height),
       texels_per_metre_(scene.albedo->width / scene.tile.x) {}
 
 Rgb PlanarAlbedo::filtered(const KernelFootprint& footprint) const {
-  if (square_texels_) return pyramid_.filtered(footprint.uv, footprint.sigma * texels_per_metre_);
-  const Mat2 texels_from_uv(pyramid_.width(), 0, 0, pyramid_.height());
-  const Mat2 j = footprint.sigma * texels_from_uv * footprint.uv_from_surface;
-  return pyramid_.filtered(footprint.uv, j * glm::transpose(j));
+  const double one = 1;
+  return mixture({&footprint, 1}, {&one, 1});
+}
+
+Rgb PlanarAlbedo::mixture(std::span<const KernelFootprint> footprints,
+                          std::span<const double> weights) const {
+  Rgb sum;
+  if (!square_texels_) {
+    const Mat2 texels_from_uv(pyramid_.width(), 0, 0, pyramid_.height());
+    for (std::size_t k = 0; k < footprints.size(); ++k) {
+      const Mat2 j = footprints[k].sigma * texels_from_uv * footprints[k].uv_from_surface;
+      sum += weights[k] * pyramid_.filtered(footprints[k].uv, j * glm::transpose(j));
+    }
+    return sum;
+  }
+  for (std::size_t first = 0; first < footprints.size(); first += PlanePyramid::most_at_once) {
+    std::array<PlanePyramid::Gaussian, PlanePyramid::most_at_once> gaussians;
+    const std::size_t count = std::min(gaussians.size(), footprints.size() - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const KernelFootprint& footprint = footprints[first + k];
+      gaussians[k] = {footprint.uv, footprint.sigma * texels_per_metre_, weights[first + k]};
+    }
+    sum += planes_.sum(std::span(gaussians).first(count), pyramid_);
+  }
+  return sum;
 }
 
 namespace {

@@ -11,6 +11,7 @@
 #include "integrators/light_disk_sampler.h"
 #include "integrators/planar_scene.h"
 #include "texture/gaussian_pyramid.h"
+#include "texture/plane_pyramid.h"
 
 namespace alabaster {
 
@@ -20,10 +21,12 @@ class PlanarAlbedo final : public AlbedoField {
   explicit PlanarAlbedo(const PlanarScene& scene);
   Rgb at(const SurfacePoint& point) const override { return pyramid_.at(point.uv); }
   Rgb filtered(const KernelFootprint& footprint) const override;
+  Rgb mixture(std::span<const KernelFootprint> footprints, std::span<const double> weights) const override;
   Rgb max() const override { return pyramid_.max(); }
 
  private:
   GaussianPyramid pyramid_;
+  PlanePyramid planes_;
   bool square_texels_;  // on the surface: an isotropic Gaussian stays one
   double texels_per_metre_;
 };

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <span>
 
 #include "core/rgb.h"
 #include "core/vec.h"
@@ -28,6 +30,12 @@ class AlbedoField {
   virtual Rgb at(const SurfacePoint& point) const = 0;
   /// alpha averaged by a Gaussian on the surface. One pyramid lookup.
   virtual Rgb filtered(const KernelFootprint& footprint) const = 0;
+  /// The sum of filtered() of several footprints, each times its weight; the spans are equally long.
+  virtual Rgb mixture(std::span<const KernelFootprint> footprints, std::span<const double> weights) const {
+    Rgb sum;
+    for (std::size_t k = 0; k < footprints.size(); ++k) sum += weights[k] * filtered(footprints[k]);
+    return sum;
+  }
   /// Footprints of at least this deviation, m, are answered from `position`, `sigma` and `triangle` (for its
   /// material) alone: whoever places them need not know the UV there.
   virtual double by_position_from() const { return std::numeric_limits<double>::infinity(); }
