@@ -32,6 +32,8 @@ int round_up(int n) {
 // Scores are summed in float for so many walks, then in double.
 constexpr uint64_t walks_per_flush = 16;
 constexpr int turns = 4;
+// Of the lattice, about: fewer make a walk dearer than what it serves, more only make pixels err alike.
+constexpr int points_across = 20;
 // Chances of being seen below this are taken by chance.
 constexpr double least_score = 0.03;
 
@@ -70,8 +72,10 @@ struct LatticeAxis {
     axis.nodes_per_texel = std::clamp(static_cast<int>(std::ceil(std::min(1 / texels_per_pixel, 1e6) - 1e-9)),
                                       1, std::max(1, most_nodes / texels));
     axis.nodes = texels * axis.nodes_per_texel;
-    axis.step =
-        std::max(1, static_cast<int>(std::lround(std::min(texels_per_pixel, 1e6) * axis.nodes_per_texel)));
+    const double nodes_per_pixel = std::min(texels_per_pixel, 1e6) * axis.nodes_per_texel;
+    const double across = light_size / pixel_size;
+    const int pixels = std::max(1, static_cast<int>(std::lround(std::min(across, 1e6) / points_across)));
+    axis.step = pixels * std::max(1, static_cast<int>(std::lround(nodes_per_pixel)));
     const double node_size = tile_size / axis.nodes, step_size = axis.step * node_size;
     axis.count = std::max(1, static_cast<int>(std::ceil(light_size / step_size - 1e-9)));
     axis.first_node = tile_position * axis.nodes - 0.5 * axis.nodes_per_texel;
@@ -148,7 +152,7 @@ class LatticeTexture {
 struct Workspace {
   std::vector<float> weights;   // turn x channel x row x column of the lattice
   std::vector<int> begin, end;  // of the light in every row, in columns, whole blocks
-  std::vector<float> scores;    // channel x row x column of the image, with margins
+  std::vector<float> scores;    // channel x row x column of the image, by cycles, with margins
   std::vector<int> pixel;       // of a column
 };
 
@@ -165,7 +169,10 @@ class LatticeLane final : public PlanarLane {
         target_weight_(scene, mean_free_path_, true),
         seen_(seen_inside(scene)),
         stride_(round_up(columns_.count)),
-        score_stride_(round_up(scene.view.width) + 2 * block) {
+        aligned_(std::abs(columns_.pixels_per_step - std::round(columns_.pixels_per_step)) < 1e-9),
+        cycles_(aligned_ ? std::max(1, static_cast<int>(std::lround(columns_.pixels_per_step))) : 1),
+        seen_columns_((scene.view.width + cycles_ - 1) / cycles_),
+        cycle_stride_(round_up(seen_columns_) + 2 * block) {
     for (int c = 0; c < channels; ++c) textures_.emplace_back(*scene.albedo, first + c, columns_, rows_);
   }
 
@@ -201,7 +208,10 @@ class LatticeLane final : public PlanarLane {
     return static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_.count);
   }
   std::size_t score_plane() const {
-    return static_cast<std::size_t>(score_stride_) * static_cast<std::size_t>(scene_.view.height);
+    return static_cast<std::size_t>(cycle_stride_ * cycles_) * static_cast<std::size_t>(scene_.view.height);
+  }
+  std::size_t score_index(int x, int y) const {
+    return static_cast<std::size_t>((y * cycles_ + x % cycles_) * cycle_stride_ + x / cycles_ + block);
   }
   float* weights(Workspace& space, int turn, int channel) const {
     return &space.weights[plane() * static_cast<std::size_t>(turn * channels_ + channel)];
@@ -318,9 +328,9 @@ class LatticeLane final : public PlanarLane {
   void score(int turn, double value, Vec2 offset, Vec2 displacement, Workspace& space) const {
     const double x = columns_.pixel(offset.x, displacement.x), y = rows_.pixel(offset.y, displacement.y);
     if (!(std::abs(x) < 1e8 && std::abs(y) < 1e8)) return;
-    const bool aligned = std::abs(columns_.pixels_per_step - 1) < 1e-9;
     const int first_x = static_cast<int>(std::floor(x));
-    if (!aligned)
+    const int cycle = (first_x % cycles_ + cycles_) % cycles_, shift = (first_x - cycle) / cycles_;
+    if (!aligned_)
       for (int i = 0; i < columns_.count; ++i)
         space.pixel[static_cast<std::size_t>(i)] =
             static_cast<int>(std::floor(x + i * columns_.pixels_per_step));
@@ -331,11 +341,9 @@ class LatticeLane final : public PlanarLane {
                 end = space.end[static_cast<std::size_t>(r)];
       for (int c = 0; c < channels_; ++c) {
         const float* from = weights(space, turn, c) + static_cast<std::ptrdiff_t>(r) * stride_;
-        float* to =
-            &space.scores[score_plane() * static_cast<std::size_t>(c) +
-                          static_cast<std::size_t>(row) * static_cast<std::size_t>(score_stride_) + block];
-        if (aligned) {
-          add_blocks(from, begin, end, to, first_x, static_cast<float>(value));
+        float* to = &space.scores[score_plane() * static_cast<std::size_t>(c) + score_index(cycle, row)];
+        if (aligned_) {
+          add_blocks(from, begin, end, to, shift, static_cast<float>(value));
         } else {
           for (int i = begin; i < std::min(end, columns_.count); ++i)
             if (const int p = space.pixel[static_cast<std::size_t>(i)]; p >= 0 && p < scene_.view.width)
@@ -345,11 +353,11 @@ class LatticeLane final : public PlanarLane {
     }
   }
 
-  /// Columns begin .. end - 1 to pixels shift + begin ..., whole blocks that overlap the image: `to` has a
-  /// margin of a block on either side.
+  /// Columns begin .. end - 1 to those of one cycle of the image, shift + begin ..., whole blocks that
+  /// overlap it: `to` has a margin of a block on either side.
   void add_blocks(const float* from, int begin, int end, float* to, int shift, float value) const {
     while (begin < end && begin + shift <= -block) begin += block;
-    while (begin < end && end - block + shift >= scene_.view.width) end -= block;
+    while (begin < end && end - block + shift >= seen_columns_) end -= block;
     for (int i = begin; i < end; i += block)
       store(to + shift + i, load(to + shift + i) + value * load(from + i));
   }
@@ -358,10 +366,7 @@ class LatticeLane final : public PlanarLane {
     for (int c = 0; c < channels_; ++c)
       for (int y = 0; y < scene_.view.height; ++y)
         for (int x = 0; x < scene_.view.width; ++x) {
-          const float score =
-              space.scores[score_plane() * static_cast<std::size_t>(c) +
-                           static_cast<std::size_t>(y) * static_cast<std::size_t>(score_stride_) +
-                           static_cast<std::size_t>(block + x)];
+          const float score = space.scores[score_plane() * static_cast<std::size_t>(c) + score_index(x, y)];
           const std::size_t pixel =
               static_cast<std::size_t>(y) * static_cast<std::size_t>(scene_.view.width) +
               static_cast<std::size_t>(x);
@@ -376,8 +381,12 @@ class LatticeLane final : public PlanarLane {
   double mean_free_path_;  // m
   LatticeAxis columns_, rows_;
   TargetWeight target_weight_;
-  Vec3 seen_;  // inside: the direction that refracts towards the camera
-  int stride_, score_stride_;
+  Vec3 seen_;   // inside: the direction that refracts towards the camera
+  int stride_;  // of a row of weights
+  // The image as scores are added to it: where a step of the lattice is a whole number of pixels, pixels so
+  // far apart are neighbours.
+  bool aligned_;
+  int cycles_, seen_columns_, cycle_stride_;
   std::vector<LatticeTexture> textures_;
 };
 

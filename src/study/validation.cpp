@@ -27,7 +27,7 @@ ValidationBudget budget(Quality quality) {
   ValidationBudget b;
   if (quality == Quality::full) {
     b.resolution = 200;
-    b.reference_noise = 0.003;
+    b.reference_noise = 0.002;
     b.floor_noise = 0.003;
     b.max_paths = 10'000'000'000;
     b.spp = 512;
