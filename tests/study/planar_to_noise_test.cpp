@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "image/metrics.h"
 #include "support/planar_scenes.h"
 #include "support/z_test.h"
 
@@ -36,6 +37,10 @@ TEST_CASE("an image to a noise has that noise, for fewer samples than even ones 
   const TimedImage shared = render_planar_to_noise(scene, method, baseline_profile(), 0.02, 1);
   CHECK(mean_noise(shared.image) <= 0.02);
   CHECK(mean_noise(shared.image) > 0.01);
+  // And it is off by no more: 64 pixels and three channels, three deviations of as many degrees of freedom as
+  // pixels at the least.
+  const Image truth = render_planar(scene, method, baseline_profile(), 8192, 7).image;
+  CHECK(compare_images(shared.image, truth).rmse_over_rms < 0.02 * (1 + 3 / std::sqrt(2 * 64.0)));
   const auto per_pixel = static_cast<uint32_t>(shared.samples / 64);
   const TimedImage even = render_planar(scene, method, baseline_profile(), per_pixel, 1);
   CHECK(mean_noise(even.image) > 1.2 * mean_noise(shared.image));
