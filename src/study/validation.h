@@ -19,10 +19,10 @@ Quality quality_from_name(const std::string& name);
 
 /// What the flat scenes are measured with.
 struct ValidationBudget {
-  int resolution = 100;             // pixels per side
+  int resolution = 100;            // pixels per side
   double reference_noise = 0.003;  // of the reference, RMSE / RMS
-  double reference_known = 0.96;    // of the reference's pixels, known to a tenth: for the log ratio
-  double floor_noise = 0.005;       // of the reference on the constant texture
+  double reference_known = 0.96;   // of the reference's pixels, known to a tenth: for the log ratio
+  double floor_noise = 0.005;      // of the reference on the constant texture
   uint64_t max_paths = 400'000'000;
   uint32_t spp = 128;       // of the models
   uint32_t sweep_spp = 64;  // of the aggregate model's widths
