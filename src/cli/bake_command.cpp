@@ -6,6 +6,8 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -94,10 +96,10 @@ void add_bake_command(CLI::App& app) {
   auto arguments = std::make_shared<BakeArguments>();
   CLI::App* command = app.add_subcommand("bake", "Simulate the half-space and write its profile table");
   command->add_option("--g", arguments->g, "mean cosine of scattering")
-      ->check(CLI::Range(-0.99, 0.99))
+      ->check(between(-0.99, 0.99))
       ->capture_default_str();
   command->add_option("--eta", arguments->eta, "relative index of refraction")
-      ->check(CLI::Range(1.0, 4.0))
+      ->check(between(1, 4))
       ->capture_default_str();
   command->add_option("--quality", arguments->quality, "quick or full")
       ->check(CLI::IsMember({"quick", "full"}))
@@ -107,15 +109,20 @@ void add_bake_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--shapes", arguments->shapes,
                     "simulate balls, cavities and slabs instead, for the shape basis");
-  command->add_option("--photons", arguments->photons,
-                      "number of photons (--shapes: per body) instead of the quality's");
+  command
+      ->add_option("--photons", arguments->photons,
+                   "number of photons (--shapes: per body) instead of the quality's")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 40));
   command->add_option("--seed", arguments->seed, "random seed")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "table file to write")->required();
   command->add_option(
       "--report", arguments->report,
       "folder for figures: the table's and other fits' accuracy against a second simulation; with "
       "--shapes the factors");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] {
+    const PromptExit prompt_exit("alabaster: interrupted; no table was written\n");
+    run(*arguments);
+  });
 }
 
 }  // namespace alabaster

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "scene/json_reader.h"
 
 namespace alabaster {
 
@@ -70,12 +71,7 @@ RenderJob read_job(const json& defaults, const json& job, const OptionSource& so
 }
 
 json read_jobs(const fs::path& file) {
-  json root;
-  try {
-    root = json::parse(read_text(file));
-  } catch (const json::parse_error& error) {
-    throw InputError(file.string(), fmt::format("is not valid JSON at byte {}", error.byte));
-  }
+  json root = parse_json(file.string(), read_text(file));
   if (!root.is_object() || !root.contains("jobs") || !root["jobs"].is_array())
     throw InputError(file.string(), R"(must hold {"defaults": {...}, "jobs": [{...}]})");
   for (const auto& [key, value] : root.items())
@@ -134,6 +130,8 @@ class Batch {
       failed(i + 1, error.what());
     } catch (const std::bad_alloc&) {
       failed(i + 1, "out of memory; try a smaller size");
+    } catch (const std::exception& error) {
+      failed(i + 1, std::string("internal error: ") + error.what());
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include "cli/commands.h"
 #include "cli/study_options.h"
+#include "core/cancellation.h"
 #include "core/parallel.h"
 #include "study/geodesic_chart.h"
 #include "study/pyramid_chart.h"
@@ -21,6 +22,7 @@ struct ChartSettings {
 /// Studies without pictures: `chart` writes what it measured into the folder.
 template <class Options>
 void run_study(const ChartSettings& settings, void (*chart)(const Options&)) {
+  const PromptExit prompt_exit("alabaster: interrupted; no chart was written\n");
   const double start = wall_seconds();
   Options options;
   options.output = settings.study.output;
@@ -30,7 +32,7 @@ void run_study(const ChartSettings& settings, void (*chart)(const Options&)) {
 }
 
 void run(ChartSettings& settings) {
-  set_thread_count(settings.study.threads);
+  settings.study.begin();
   if (settings.what == "geodesic") return run_study(settings, &chart_geodesics);
   if (settings.what == "pyramids") return run_study(settings, &chart_pyramids);
   ChartOptions& options = settings.options;

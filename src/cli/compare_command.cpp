@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -131,6 +132,11 @@ void print(const Metrics& m) {
   if (m.scale != 1) line("scale", number(m.scale), "A was multiplied with it");
 }
 
+void check_diff_name(const std::string& path) {
+  if (!path.empty() && std::filesystem::path(path).extension() != ".png")
+    throw InputError(path, "the name of --diff must end in .png");
+}
+
 void write_difference(const std::string& path, Image a, const Image& b, double scale) {
   const auto colour_a = find_colour(a), colour_b = find_colour(b);
   for (const int channel : std::set<int>(colour_a->rgb.begin(), colour_a->rgb.end()))
@@ -142,6 +148,7 @@ void write_difference(const std::string& path, Image a, const Image& b, double s
 }
 
 void run(const CompareArguments& arguments) {
+  check_diff_name(arguments.diff);
   const Image a = read_linear(arguments.a), b = read_linear(arguments.b);
   CompareOptions options;
   options.fit_scale = arguments.scale == "fit";

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "core/cancellation.h"
 #include "core/error.h"
 #include "core/progress.h"
 #include "study/demo_recipe.h"
@@ -15,6 +16,8 @@
 namespace alabaster {
 
 namespace {
+
+constexpr std::size_t most_triangles = 20'000'000;
 
 struct GenerateOptions {
   std::vector<std::string> names{"scenes"};
@@ -59,7 +62,6 @@ void generate(const GenerateOptions& options) {
     if (options.names != std::vector<std::string>{"blob"})
       throw InputError("--triangles and --plain: only the scene 'blob' can be had so; ask for it alone");
     const std::size_t triangles = options.triangles.value_or(15552);
-    if (triangles > 20'000'000) throw InputError("--triangles: at most 20 million");
     return write_scene(make_blob_recipe(triangles, !options.plain), options.folder);
   }
   for (const std::string& name : expand(options.names)) {
@@ -85,11 +87,14 @@ void add_generate_command(CLI::App& app) {
   command->add_option("-o,--output", options->folder, "Folder for NAME.glb and NAME.json, or NAME.png")
       ->capture_default_str();
   command->add_option("--triangles", options->triangles, "blob alone: about so many triangles (15552)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(std::size_t{1}, most_triangles))
       ->type_name("N");
   command->add_flag("--plain", options->plain, "blob alone: one albedo, 0.9, instead of a texture");
   command->add_flag("--list", options->list, "Print the names and do nothing else");
-  command->callback([options] { generate(*options); });
+  command->callback([options] {
+    const PromptExit prompt_exit("alabaster: interrupted; the files named so far are whole\n");
+    generate(*options);
+  });
 }
 
 }  // namespace alabaster

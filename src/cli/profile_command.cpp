@@ -9,6 +9,8 @@
 #include <string>
 
 #include "cli/commands.h"
+#include "cli/option_checks.h"
+#include "core/cancellation.h"
 #include "core/error.h"
 #include "core/vec.h"
 #include "optics/albedo_walk.h"
@@ -188,11 +190,11 @@ void add_profile_command(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("profile", "Simulate one homogeneous half-space or slab: totals and radial profile");
   command->add_option("--alpha", walk.albedo, "single-scattering albedo")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->capture_default_str();
   command->add_option("--g", walk.medium.g, "mean cosine of scattering, in (-1, 1)")->capture_default_str();
   command->add_option("--eta", walk.medium.eta, "relative index of refraction")
-      ->check(CLI::Range(1.0, 10.0))
+      ->check(between(1, 10))
       ->capture_default_str();
   command->add_option("--entry", arguments->entry, "how light arrives: normal, diffuse or direction")
       ->check(CLI::IsMember({"normal", "diffuse", "direction"}))
@@ -208,6 +210,7 @@ void add_profile_command(CLI::App& app) {
   command->add_flag("--csv", arguments->csv, "the radial profile as CSV on standard output")->excludes(json);
   command->add_option("--plot", arguments->plot, "also draw the profile (SVG, needs gnuplot)");
   command->callback([arguments] {
+    const PromptExit prompt_exit("alabaster: interrupted; nothing is left of what was simulated\n");
     finish(*arguments);
     run(*arguments);
   });

@@ -1,7 +1,6 @@
 #include "cli/render_job.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "cli/commands.h"
+#include "core/atomic_file.h"
 #include "core/cancellation.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -31,12 +31,10 @@ constexpr const char* interrupted_early =
 void check_output(const fs::path& path, const char* extension) {
   if (path.extension() != extension)
     throw InputError(path.string(), fmt::format("the output's name must end in {}", extension));
-  if (fs::is_directory(path)) throw InputError(path.string(), "is a folder; name a file");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || access(folder.c_str(), W_OK) != 0)
-    throw InputError(path.string(), "its folder cannot be written; choose another with -o");
+  if (fs::is_directory(path, error)) throw InputError(path.string(), "is a folder; name a file");
+  if (error == std::errc::filename_too_long) throw InputError(path.string(), "the output's name is too long");
+  require_folder(path.parent_path(), path);
 }
 
 Camera find_camera(const Scene& scene, const std::string& name) {

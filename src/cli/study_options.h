@@ -20,6 +20,9 @@ struct StudyOptions {
   std::optional<int> resolution;  // of meshes
   std::optional<double> noise;    // of the references of meshes
 
+  /// Sets the threads, and refuses a folder that cannot be written before an hour of work. InputError.
+  void begin() const;
+
   /// Where the files of a study go and its seed, which all kinds of options hold under these names.
   template <typename Options>
   void set(Options& options) const {

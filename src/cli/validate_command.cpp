@@ -35,7 +35,7 @@ void measure_response(ValidateSettings& settings) {
 }
 
 void run(ValidateSettings& settings) {
-  set_thread_count(settings.study.threads);
+  settings.study.begin();
   settings.options.quality = quality_from_name(settings.quality);
   settings.study.set(settings.options);
   (settings.what == "response" ? measure_response : measure_images)(settings);

@@ -38,6 +38,16 @@ void write_file_atomically(const fs::path& target, const std::function<void(cons
   }
 }
 
+void require_folder(const fs::path& folder, const fs::path& named) {
+  const fs::path place = folder.empty() ? fs::path(".") : folder;
+  std::error_code error;
+  fs::create_directories(place, error);
+  if (error || !fs::is_directory(place, error) || access(place.c_str(), W_OK) != 0)
+    throw InputError(named.string(), folder == named
+                                         ? "is no folder that can be written; choose another with -o"
+                                         : "its folder cannot be written; choose another with -o");
+}
+
 void write_text_atomically(const fs::path& target, std::string_view text) {
   write_file_atomically(target, [&](const fs::path& temporary) {
     std::ofstream out(temporary, std::ios::binary);

@@ -16,4 +16,8 @@ void write_text_atomically(const std::filesystem::path& target, std::string_view
 /// The whole of a file. Throws InputError when it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
+/// Makes the folder if need be. Throws InputError when no file can be put there, which a run should say
+/// before it begins; `named` is what the user called the place.
+void require_folder(const std::filesystem::path& folder, const std::filesystem::path& named);
+
 }  // namespace alabaster

@@ -27,12 +27,15 @@ void check_size(int64_t width, int64_t height, const std::string& name) {
                                " pixels; at most 2^29 are accepted");
 }
 
+std::string decoding_failure() {
+  const std::string reason = stbi_failure_reason();  // sometimes empty
+  return "cannot be decoded" + (reason.empty() ? "" : " (" + reason + ")") + "; the file may be damaged";
+}
+
 template <class Sample>
 std::vector<Sample> take(Sample* samples, const DecodedImage& image, const std::string& name) {
   const std::unique_ptr<Sample, void (*)(void*)> owner(samples, stbi_image_free);
-  if (samples == nullptr)
-    throw InputError(
-        name, std::string("cannot be decoded (") + stbi_failure_reason() + "); the file may be damaged");
+  if (samples == nullptr) throw InputError(name, decoding_failure());
   const auto count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4;
   return std::vector<Sample>(samples, samples + count);
 }
@@ -46,9 +49,7 @@ DecodedImage decode_with_stb(std::span<const uint8_t> bytes, const std::string& 
   int& w = image.width;
   int& h = image.height;
   int& channels = image.file_channels;
-  if (stbi_info_from_memory(data, size, &w, &h, &channels) == 0)
-    throw InputError(
-        name, std::string("cannot be decoded (") + stbi_failure_reason() + "); the file may be damaged");
+  if (stbi_info_from_memory(data, size, &w, &h, &channels) == 0) throw InputError(name, decoding_failure());
   check_size(w, h, name);
   int ignored = 0;
   if (stbi_is_hdr_from_memory(data, size) != 0)

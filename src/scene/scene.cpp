@@ -122,6 +122,17 @@ bool reads_albedo_texture(const Scene& scene, const SceneObject& object) {
   });
 }
 
+/// Beyond these, squares and densities leave the range of single precision.
+void check_size(const Scene& scene) {
+  constexpr double smallest = 1e-15, largest = 1e15;  // m
+  const double diagonal = scene.bounds.diagonal();
+  if (!(diagonal >= smallest && diagonal <= largest))
+    throw InputError(scene.name,
+                     fmt::format("is {:.3g} m across, outside {:g} to {:g}; check the scale of its "
+                                 "nodes and positions",
+                                 diagonal, smallest, largest));
+}
+
 }  // namespace
 
 void prepare_scene(Scene& scene, Purpose purpose) {
@@ -153,6 +164,7 @@ void prepare_scene(Scene& scene, Purpose purpose) {
       }
     }
   }
+  check_size(scene);
   build_albedo_fields(scene, purpose);
   add_emissive_triangles(scene);
   for (std::size_t i = 0; i < scene.objects.size(); ++i)

@@ -296,6 +296,7 @@ std::vector<ResponseResult> validate_response(const ValidationOptions& options) 
   if (methods.empty()) methods = standard_mesh_methods();
   std::vector<ResponseResult> results;
   for (const std::string& name : expand_mesh_scenes(options.scenes)) {
+    if (cancellation_requested()) break;
     const MeshScene scene = load_mesh_scene(name, budget.resolution);
     const std::string obstacle = obstacle_to_reference(scene);
     if (!obstacle.empty()) {
