@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bssrdf/aggregation_kernel.h"
 #include "image/false_colour.h"
+#include "study/kernel_picture.h"
 #include "study/planar_scene_file.h"
 #include "study/report_pictures.h"
 
@@ -162,6 +164,28 @@ void density_chart(HtmlReport& report, const ValidationResult& result) {
 
 // ---- kernels and footprints
 
+// [EK17] figures 2 and 3: what lies between the exit and an entry on the light's side of it.
+void kernel_over_texture_row(HtmlReport& report, const ValidationResult& result, const KernelMap& map) {
+  for (const SceneResult& measured : result.scenes) {
+    const PlanarScene& scene = measured.scene;
+    if (scene.name != map.scene) continue;
+    const Vec2 to_light = scene.light.centre - map.exit;
+    const Vec2 direction = glm::length(to_light) > 0 ? glm::normalize(to_light) : Vec2(1, 0);
+    const Vec2 entry = map.exit + 1.5 * scene.medium.mean_free_path.r * direction;
+    constexpr int size = 240;
+    report.images(
+        {{kernel_over_texture(scene, entry, map.exit, ek17_kernel, size), "kernel of composite",
+          "the three Gaussians of eq. 1 between entry and exit, over the texture of " + map.scene},
+         {kernel_over_texture(scene, entry, map.exit, symmetric_ek17_kernel, size),
+          "kernel of composite:symmetric",
+          "the six Gaussians of the symmetric kernel, over the texture of " + map.scene}},
+        "Where the albedo between two points 1.5 mean free paths apart is looked for: density in orange, a "
+        "line at one standard deviation of each Gaussian, the entry white, the exit black.",
+        picture_width);
+    return;
+  }
+}
+
 void kernel_section(HtmlReport& report, const ValidationResult& result) {
   if (result.maps.empty()) return;
   report.heading("Kernels");
@@ -187,6 +211,7 @@ void kernel_section(HtmlReport& report, const ValidationResult& result) {
                         "kernel of " + name + " on " + map.scene});
     }
     report.images(images, "", picture_width);
+    kernel_over_texture_row(report, result, map);
   }
 }
 
