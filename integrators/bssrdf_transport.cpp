@@ -47,12 +47,20 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
       *model_, ProbeTarget{&scene.rays, &body.mesh, object, std::move(boundary), light});
 }
 
-std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3&,
+std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3& viewer,
                                                        const Sampler& sampler, uint32_t occurrence) const {
   probe_->fetch(exit.triangle);
-  const auto entry = probe_->sample_entry(model_->medium().point(exit), sampler, occurrence);
+  const BssrdfPoint from = model_->medium().point(exit);
+  const auto entry = probe_->sample_entry(from, sampler, occurrence);
   if (!entry || entry->weight.is_black()) return std::nullopt;
-  return SubsurfaceEntry{entry->point.surface, std::nullopt, entry->weight * lobe_};
+  SubsurfaceEntry result{entry->point.surface, std::nullopt, std::nullopt, entry->weight * lobe_};
+  const Rgb slope = model_->aim(entry->point, from);
+  if (slope.is_black()) return result;
+  const Vec3 chord = glm::normalize(result.point.position - exit.position);
+  const auto within = [&](const Vec3& normal) { return chord - glm::dot(chord, normal) * normal; };
+  result.aim = LightAim{Rgb(1) - glm::dot(viewer, within(exit.shading_normal)) * slope, slope,
+                        within(result.point.shading_normal)};
+  return result;
 }
 
 }  // namespace alabaster

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,11 +11,25 @@
 
 namespace alabaster {
 
+/// How much of the light that enters at a point, by its direction, matters there: a factor with mean about 1
+/// over the hemisphere.
+struct LightAim {
+  Rgb offset{1}, slope{0};
+  Vec3 along{0};
+
+  /// `direction` points to where the light comes from.
+  Rgb at(const Vec3& direction) const {
+    const Rgb factor = offset + glm::dot(along, direction) * slope;
+    return {std::max(0.0, factor.r), std::max(0.0, factor.g), std::max(0.0, factor.b)};
+  }
+};
+
 /// Where light that leaves a medium came in.
 struct SubsurfaceEntry {
   SurfacePoint point;  // normals outwards
   /// Unit, outside, towards where the light comes from; without one the light of the whole hemisphere counts.
   std::optional<Vec3> direction;
+  std::optional<LightAim> aim;  // of the hemisphere's light; absent: 1
   /// Times the irradiance that enters, E of docs/theory.md (W/m^2), or times the radiance that arrives
   /// along `direction`: an estimate of the radiance that leaves, but for the exit's transmission T(cos_o).
   Rgb weight;

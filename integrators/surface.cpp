@@ -378,8 +378,8 @@ Rgb SurfaceIntegrator::subsurface(const Interaction& it, const Body& body, const
   const TriangleMesh& mesh = scene_.objects[it.point.object].mesh;
   const uint16_t material = mesh.materials[point.triangle];
   const Vec3 mirror_normal = mapped_normal(scene_.materials[material], mesh, point, it.front);
-  return entry->weight *
-         entering(point, mirror_normal, interfaces_[material], pi * entry->weight.max(), arrival, path);
+  return entry->weight * entering(point, mirror_normal, interfaces_[material], pi * entry->weight.max(),
+                                  arrival, path, entry->aim.value_or(LightAim()));
 }
 
 // What a walk meets where it left: lights in full, since no light sampling can reach through the boundary.
@@ -395,11 +395,12 @@ Rgb SurfaceIntegrator::entering_along(const SubsurfaceEntry& entry, const Arriva
 
 // Environment and other surfaces are met by one ray, drawn for both; other lights are sampled by themselves.
 Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_normal,
-                                const Interface& interface, double weight, const Arrival& arrival,
-                                Path& path) const {
+                                const Interface& interface, double weight, const Arrival& arrival, Path& path,
+                                const LightAim& aim) const {
   const uint32_t vertex = path.vertices++;
-  Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position);
-  if (near_lights_.has_lights()) sum += entering_from_light(point, mirror_normal, interface, vertex, path);
+  Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position) * aim.at(Vec3(0));
+  if (near_lights_.has_lights())
+    sum += entering_from_light(point, mirror_normal, interface, vertex, path, aim);
   const Vec3& normal = point.shading_normal;
   const Vec2 u = path.sampler.get_2d(Dimension::diffuse_direction, vertex);
   HemisphereSample chosen;
@@ -413,16 +414,17 @@ Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_no
   if (!(chosen.pdf > 0) || cosine <= 0 || glm::dot(chosen.direction, point.geometric_normal) <= 0) return sum;
   const double factor =
       interface.transmission(glm::dot(mirror_normal, chosen.direction)) * cosine / chosen.pdf;
-  if (factor <= 0) return sum;
-  Arrival next = arrival.scattered(chosen.pdf, near_lights_, point, weight * inv_pi * factor);
+  const Rgb aimed = aim.at(chosen.direction);
+  if (factor <= 0 || aimed.is_black()) return sum;
+  Arrival next = arrival.scattered(chosen.pdf, near_lights_, point, weight * inv_pi * factor * aimed.max());
   ++next.bounces;
   next.chain = 0;
-  return sum + factor * incoming(leaving(point, chosen.direction), next, path);
+  return sum + factor * aimed * incoming(leaving(point, chosen.direction), next, path);
 }
 
 Rgb SurfaceIntegrator::entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal,
-                                           const Interface& interface, uint32_t vertex,
-                                           const Path& path) const {
+                                           const Interface& interface, uint32_t vertex, const Path& path,
+                                           const LightAim& aim) const {
   const auto light = near_lights_.sample(point.position, point.geometric_normal,
                                          path.sampler.get_1d(Dimension::light_choice, vertex),
                                          path.sampler.get_2d(Dimension::light_point, vertex));
@@ -432,7 +434,8 @@ Rgb SurfaceIntegrator::entering_from_light(const SurfacePoint& point, const Vec3
   const double transmission = interface.transmission(glm::dot(mirror_normal, light->direction));
   if (transmission <= 0 || !lit(point, *light, opacity_number(path, vertex))) return Rgb();
   const double other = light->delta ? 0 : entering_pdf(point.shading_normal, light->direction);
-  return light->radiance * (transmission * cosine * power_heuristic(light->pdf, other) / light->pdf);
+  return aim.at(light->direction) * light->radiance *
+         (transmission * cosine * power_heuristic(light->pdf, other) / light->pdf);
 }
 
 double SurfaceIntegrator::entering_pdf(const Vec3& normal, const Vec3& direction) const {

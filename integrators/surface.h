@@ -96,10 +96,10 @@ class SurfaceIntegrator final : public Integrator {
   Rgb subsurface(const Interaction& it, const Body& body, const Arrival& arrival, Path& path) const;
   /// Estimates the integral of T(cos) L cos over the hemisphere: direct light, and one bounce on.
   Rgb entering(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
-               double weight, const Arrival& arrival, Path& path) const;
+               double weight, const Arrival& arrival, Path& path, const LightAim& aim = {}) const;
   Rgb entering_along(const SubsurfaceEntry& entry, const Arrival& arrival, Path& path) const;
   Rgb entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
-                          uint32_t vertex, const Path& path) const;
+                          uint32_t vertex, const Path& path, const LightAim& aim) const;
 
   Rgb unscattered_share(const Body& body, const Ray& ray, double distance, Rng rng) const;
   /// Density of the direction in which entering() looks for the environment and other surfaces.

@@ -30,7 +30,7 @@ std::optional<SubsurfaceEntry> VolumeTransport::sample(const SurfacePoint& exit,
   Rng rng = sampler.stream(Dimension::walk, occurrence);
   const auto end = walk_.walk(exit, glm::normalize(inwards), rng);
   if (!end || end->order == 0) return std::nullopt;
-  return SubsurfaceEntry{end->point, end->direction, end->weight};
+  return SubsurfaceEntry{end->point, end->direction, std::nullopt, end->weight};
 }
 
 std::string VolumeTransport::report() const {

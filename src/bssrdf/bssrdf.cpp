@@ -23,6 +23,11 @@ PairShape Bssrdf::pair(const Vec3& entry, const PointShape& at_entry, const Vec3
   return flat;
 }
 
+Rgb Bssrdf::aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+  if (medium_.shape == nullptr) return {};
+  return medium_.shape->families->aim(pair(entry, exit), 0.5 * (entry.albedo + exit.albedo), medium_.sigma_t);
+}
+
 Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, const PairShape& pair) const {
   const Rgb& sigma_t = medium_.sigma_t;
   const Rgb half_space =

@@ -71,6 +71,9 @@ class Bssrdf {
   /// Distance and shape of a pair, for the basis.
   PairShape pair(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
                  const PointShape& at_exit) const;
+  /// Slope of light's aim per channel, see ShapeFamilies::aim; 0 on the half-space basis. At the mean of the
+  /// albedos at both ends.
+  Rgb aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const;
   /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
   /// the shape.
   Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const;

@@ -20,8 +20,8 @@ PointShape::PointShape(const LocalShape& local, double thickest)
       curvature_max(local.curvature_max),
       inverse_thickness(local.inverse_thickness) {
   const double half_thickness = 0.5 / std::max(inverse_thickness, 1 / thickest);
-  const double square = 0.5 * (curvature_min * curvature_min + curvature_max * curvature_max);
-  sphericity = std::min(square * half_thickness * half_thickness, 1.0);
+  bend_square = 0.5 * (curvature_min * curvature_min + curvature_max * curvature_max);
+  sphericity = std::min(bend_square * half_thickness * half_thickness, 1.0);
 }
 
 PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
@@ -30,6 +30,7 @@ PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& 
   const double square = length_squared(chord);
   PairShape pair;
   pair.distance = glm::distance(entry, exit);
+  pair.bend = std::sqrt(0.5 * (at_entry.bend_square + at_exit.bend_square));
   pair.inverse_thickness = 0.5 * (at_entry.inverse_thickness + at_exit.inverse_thickness);
   // What is a ball but for 2 % is one.
   pair.sphericity = std::min(0.51 * (at_entry.sphericity + at_exit.sphericity), 1.0);

@@ -15,6 +15,7 @@ struct PointShape {
   double curvature_min = 0, curvature_max = 0;  // 1/m, convex positive
   double inverse_thickness = 0;                 // 1/m
   double sphericity = 0;                        // [0, 1]
+  double bend_square = 0;                       // 1/m^2: mean square of the principal curvatures
 
   PointShape() = default;
   /// `thickest` (m) is what counts as nothing behind.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optics/aim_bake.h"
+
 namespace alabaster {
 
 namespace {
@@ -121,13 +123,16 @@ Eigen::VectorXd smooth(ShapeFamily family, double size, const Bins& bins, const 
   return before + matrix.ldlt().solve(right);
 }
 
-// What all bins hold together is better known than any of them: the factors are scaled to it.
+// What all bins hold together is better known than any of them: the factors are scaled to it. In full where it
+// is known to 1 %, less where it is as uncertain as the factors are (about a tenth), not at all beyond 20 %.
 double scale_to_total(const Bins& bins, const Eigen::VectorXd& nodes) {
   double sum = 0;
   for (std::size_t k = 0; k < bins.position.size(); ++k)
     sum += bins.expected[k] * std::exp(interpolated(nodes, bins.position[k]));
-  if (!(bins.measured > 0) || !(sum > 0) || bins.variance > 1e-4 * bins.measured * bins.measured) return 0;
-  return std::clamp(std::log(bins.measured / sum), -0.1, 0.1);
+  const double square = bins.measured * bins.measured;
+  if (!(bins.measured > 0) || !(sum > 0) || bins.variance > 0.04 * square) return 0;
+  const double doubt = std::max(0.0, bins.variance / square - 1e-4);
+  return std::clamp(std::log(bins.measured / sum) / (1 + doubt / 1e-2), -0.3, 0.3);
 }
 
 }  // namespace
@@ -189,6 +194,8 @@ ShapeTable bake_shapes(const ShapeBakeOptions& options, const ProfileTable& half
       }
     }
   };
+  for (const double slope : bake_aim(options.medium, options.photons, options.seed))
+    table.aim.push_back(static_cast<int16_t>(std::lround(slope / ShapeTable::step)));
   int done = 0;
   for (const ShapeFamily family : {ShapeFamily::ball, ShapeFamily::cavity, ShapeFamily::slab_near})
     for (int i = 0; i < ShapeGrid::sizes; ++i) {

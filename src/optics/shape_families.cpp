@@ -54,6 +54,7 @@ Float4 four(const Rgb& v, double last) {
 }  // namespace
 
 ShapeFamilies::ShapeFamilies(const ShapeTable& table) : g_(table.g), eta_(table.eta) {
+  for (const int16_t slope : table.aim) aim_.push_back(static_cast<float>(ShapeTable::step * slope));
   for (int f = 0; f < ShapeGrid::family_count; ++f) {
     const auto family = static_cast<ShapeFamily>(f);
     const int nodes = ShapeGrid::nodes(family);
@@ -163,6 +164,28 @@ Rgb ShapeFamilies::factor(const PairShape& pair, const Rgb& albedo, const Rgb& s
   const Float4 factor = fast_exp2(sum);
   if (channels == 1) return Rgb(pair.reach * double{factor[0]});
   return pair.reach * Rgb(double{factor[0]}, double{factor[1]}, double{factor[2]});
+}
+
+Rgb ShapeFamilies::aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const {
+  const Float4 path = four(Rgb(1) / sigma_t, 1);
+  const Float4 curved = static_cast<float>(pair.bend) * path;
+  const Float4 thin = static_cast<float>(pair.inverse_thickness) * path;
+  const Rows rows_of(albedo);
+  const Float4 shape = square_root(
+      curved * curved + thin * thin * thickness_fade(rows_of.remainder, thin, static_cast<float>(g_)));
+  const Float4 log2_rho = fast_log2(static_cast<float>(std::max(pair.distance, 1e-30)) / path);
+  Rgb result;
+  for (int c = 0; c < 3; ++c) {
+    const float share = std::clamp((shape[c] - static_cast<float>(flat)) * 20, 0.f, 1.f);
+    const float along =
+        std::clamp(static_cast<float>(AimGrid::position(double{log2_rho[c]})), 0.f, AimGrid::nodes - 1.001f);
+    const int node = static_cast<int>(along);
+    const float* at = aim_.data() + AimGrid::index(node, rows_of.row[c]);
+    const float t = rows_of.fraction[c], s = along - static_cast<float>(node);
+    const float low = at[0] + t * (at[1] - at[0]), high = at[rows] + t * (at[rows + 1] - at[rows]);
+    result[c] = double{share * share * (3 - 2 * share) * (low + s * (high - low))};
+  }
+  return result;
 }
 
 double ShapeFamilies::factor(ShapeFamily family, double size, double distance, double albedo) const {

@@ -19,6 +19,7 @@ struct PairShape {
   double sphericity = 0;         // [0, 1]: 0 a slab, 1 a ball
   double far = 0;                // [0, 1]: 0 both points on one side of the slab, 1 on opposite sides
   double reach = 1;              // [0, 1]: 0 where no medium is between the points, but a gap
+  double bend = 0;               // root mean square of the principal curvatures at both points
 };
 
 /// Correction factors of curved and thin bodies over the half-space basis, by interpolation in a ShapeTable:
@@ -36,7 +37,12 @@ class ShapeFamilies {
   double eta() const { return eta_; }
   /// S of the shape over S of the half-space, per channel. `sigma_t` in the inverse of the pair's unit.
   Rgb factor(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
-  /// The same in one channel for one family: `size` a radius or thickness and `distance` a chord (balls,
+  /// Slope b of light's aim: S for light that arrives along -w and leaves along v is S (1 + b (w - v) . u), u
+  /// the unit vector from exit to entry, w . u and v . u taken within the surface. The half-space's
+  /// (bake_aim), setting in with curvature and thinness: 0 on a half-space, in full where they exceed 1/20
+  /// per mean free path.
+  Rgb aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
+  /// factor() in one channel for one family: `size` a radius or thickness and `distance` a chord (balls,
   /// cavities) or lateral distance (slabs), mean free paths.
   double factor(ShapeFamily family, double size, double distance, double albedo) const;
 
@@ -48,6 +54,7 @@ class ShapeFamilies {
   }
 
   double g_, eta_;
+  std::vector<float> aim_;                                          // by AimGrid
   std::array<std::vector<float>, ShapeGrid::family_count> tables_;  // [size, flat first][node][row]
 };
 

@@ -19,6 +19,7 @@ void transfer(Archive& archive, Table& table) {
   archive.field(table.seed);
   archive.field(table.provenance);
   for (auto& family : table.log2_factor) archive.field(family);
+  archive.field(table.aim);
 }
 
 }  // namespace
@@ -30,6 +31,8 @@ std::string encode_shape_table(const ShapeTable& table) {
 ShapeTable decode_shape_table(std::span<const char> bytes, const std::string& name) {
   ShapeTable table;
   decode_framed(frame, bytes, name, [&](TableReader& reader) { transfer(reader, table); });
+  if (table.aim.size() != AimGrid::index(AimGrid::nodes, 0))
+    throw InputError(name, "the table of shapes has the wrong size; bake it again");
   for (int f = 0; f < ShapeGrid::family_count; ++f) {
     const int nodes = ShapeGrid::nodes(static_cast<ShapeFamily>(f));
     if (table.log2_factor[static_cast<std::size_t>(f)].size() !=

@@ -39,9 +39,20 @@ struct ShapeGrid {
   }
 };
 
+/// Where the slope of light's aim is tabulated (aim_bake.h): distances from 2^-5 to 2^7 mean free paths, two
+/// to the octave, at the albedos of ShapeGrid.
+struct AimGrid {
+  static constexpr int nodes = 25;
+  static constexpr double first_octave = -5;
+  static double position(double log2_distance) { return 2 * (log2_distance - first_octave); }
+  static std::size_t index(int node, int row) {
+    return static_cast<std::size_t>(node * ShapeGrid::rows + row);
+  }
+};
+
 /// Correction factors over the half-space: log2 of S in the body over S of a half-space at the same chord.
 struct ShapeTable {
-  static constexpr uint32_t version = 1;
+  static constexpr uint32_t version = 2;
   static constexpr double step = 1.0 / 1024;  // of the stored integers, in log2
 
   double g = 0, eta = 1;
@@ -49,6 +60,8 @@ struct ShapeTable {
   std::string provenance;  // one line for people
   /// Per family [size][node][row].
   std::array<std::vector<int16_t>, ShapeGrid::family_count> log2_factor;
+
+  std::vector<int16_t> aim;  // by AimGrid, in units of `step`
 
   static std::size_t index(ShapeFamily family, int size, int node, int row) {
     return static_cast<std::size_t>((size * ShapeGrid::nodes(family) + node) * ShapeGrid::rows + row);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -132,6 +133,66 @@ inline AnalyticBody make_torus_body(std::string name, double ring, double tube) 
       // The ball around the nearest point of the tube's circle lies within the torus: as far as its surface.
       const double c = std::max(tube * tube - glm::dot(a, a), 0.0), root = std::sqrt(slope * slope + c);
       t += std::max(slope > 0 ? c / (root + slope) : root - slope, 1e-9 * tube);
+    }
+    return t;
+  };
+  return body;
+}
+
+/// The blob of the study scenes (geometry/shapes.h): |p| = radius (1 + bump h(p / |p|)), |h| <= 1.
+inline AnalyticBody make_blob_body(std::string name, double radius, double bump) {
+  struct Bumps {
+    double height = 0;
+    Vec3 slope{0};  // along the unit sphere
+  };
+  const auto bumps_at = [](const Vec3& d) {
+    static const std::array<std::array<double, 5>, 4> waves{{{3.1, 1.2, -0.7, 0.4, 0.35},
+                                                             {-1.3, 3.7, 1.9, 1.7, 0.30},
+                                                             {1.1, -2.3, 4.3, 2.9, 0.20},
+                                                             {5.3, 2.9, 3.1, 0.8, 0.15}}};
+    Bumps result;
+    for (const auto& [x, y, z, phase, weight] : waves) {
+      const Vec3 frequency(x, y, z);
+      const double argument = glm::dot(frequency, d) + phase;
+      result.height += weight * std::sin(argument);
+      result.slope += weight * std::cos(argument) * frequency;
+    }
+    result.slope -= glm::dot(result.slope, d) * d;
+    return result;
+  };
+  const auto onto = [=](const Vec3& p) {
+    const Vec3 d = glm::normalize(p);
+    return radius * (1 + bump * bumps_at(d).height) * d;
+  };
+  AnalyticBody body;
+  body.name = std::move(name);
+  body.onto = onto;
+  body.normal = [=](const Vec3& p) {
+    const double length = glm::length(p);
+    const Vec3 d = p / length;
+    return glm::normalize(d - (radius / length) * bump * bumps_at(d).slope);
+  };
+  body.patches = {[=](Vec2 s) {
+    const double z = 1 - 2 * s.y, azimuth = 2 * pi * s.x, r = std::sqrt(std::max(0.0, 1 - z * z));
+    return onto(Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z));
+  }};
+  body.boundary = [=](const Vec3& p, const Vec3& w) {
+    // No step reaches the surface: its slope against the sphere is below 1.2 where bump <= 0.2.
+    const double safe = (1 - bump) * radius;
+    double t = 0;
+    for (int step = 0; step < 200; ++step) {
+      const Vec3 q = p + t * w;
+      const double length = glm::length(q);
+      if (length < 0.9 * safe) {
+        const double along = glm::dot(q, w);
+        t += std::sqrt(along * along + safe * safe - length * length) - along;
+        continue;
+      }
+      const Bumps bumps = bumps_at(q / length);
+      const double inside = radius * (1 + bump * bumps.height) - length;
+      if (inside < 1e-6 * radius && glm::dot(q / length - (radius / length) * bump * bumps.slope, w) > 0)
+        break;
+      t += std::max(0.6 * inside, 1e-7 * radius);
     }
     return t;
   };

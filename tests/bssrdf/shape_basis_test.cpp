@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "bssrdf/body.h"
-#include "bssrdf/body_transfer.h"
+#include "bssrdf/body_view.h"
 #include "core/statistics.h"
 #include "geometry/shapes.h"
 #include "support/analytic_albedo.h"
@@ -120,5 +120,45 @@ TEST_CASE("radiosity of spheres and slabs within 2 % of walks in them, of others
         // The quadrature itself is good to 1 %.
         CHECK(std::abs(result.predicted.value[a][l] - walked) < (c.goal + 0.01) * walked + 3.5 * error);
       }
+  }
+}
+
+TEST_CASE("images under one-sided light: within 4 % of walks by light's aim, 10 % too bright without",
+          "[bssrdf]") {
+  const Vec3 camera(0, 0.15, 1), key(-0.6, 0.62, 0.5);
+  const std::size_t a = 1;
+  const double albedo = body_albedos[a];
+  for (const AnalyticBody& body :
+       {make_ellipsoid_body("sphere 3", Vec3(3)), make_torus_body("torus 9 / 3", 9, 3)}) {
+    const BodyView view = make_view(body, camera, key, 30);
+    const Sky sky{0.15, 3, view.key};
+    const Entering entering(sky, Lobe());
+    double walked = 0, variance = 0, mean = 0, aimed = 0;
+    for (std::size_t i = 0; i < view.exits.size(); ++i) {
+      const Vec3 xe = view.exits[i], n = body.normal(xe);
+      const double share = view.share[i] * (1 - fresnel_dielectric(glm::dot(n, view.camera), 1.5));
+      RunningMoments light;
+      const int photons = 1500;
+      walk_pixel(view, xe, false, photons, i, [&](int64_t order, const Vec3&, const Vec3& w) {
+        light.add(std::pow(albedo, static_cast<double>(order)) * sky.radiance(w));
+      });
+      while (light.count() < photons) light.add(0);
+      walked += share * light.mean();
+      variance += share * share * light.variance_of_mean();
+      const PointShape at_exit(body.shape(xe), thickest_body);
+      for (const BodyCell& cell : BodyCells(body, xe).cells()) {
+        const PairShape pair = pair_shape(cell.position, cell.shape, xe, at_exit);
+        const double s = cell.area * baseline_profile().evaluate(albedo, pair.distance) *
+                         baseline_shapes().factor(pair, Rgb(albedo), Rgb(1)).r;
+        mean += share * s * entering.at(glm::dot(cell.shape.normal, view.key));
+        aimed += share * s *
+                 aimed_irradiance(baseline_shapes().aim(pair, Rgb(albedo), Rgb(1)).r, entering, view, true,
+                                  cell.position, cell.shape.normal, xe, n);
+      }
+    }
+    INFO(body.name << ": " << walked << " +- " << std::sqrt(variance) << ", by the basis " << aimed
+                   << ", without aim " << mean);
+    CHECK(std::abs(aimed - walked) < 0.04 * walked + 3.5 * std::sqrt(variance));
+    CHECK(mean > 1.1 * walked - 3.5 * std::sqrt(variance));
   }
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "integrators/bssrdf_transport.h"
 #include "integrators/scene_builder.h"
 #include "optics/fresnel.h"
 
@@ -130,4 +131,44 @@ TEST_CASE("on one albedo composite is the homogeneous model, bit for bit") {
   const Measured composite = measure(scene, options, 500);
   options.model = "homogeneous";
   CHECK(measure(scene, options, 500).mean == composite.mean);
+}
+
+TEST_CASE("light's aim is asked on bodies only, and favours light that comes from beyond the entry") {
+  const auto transport_of = [](Scene& scene) {
+    scene.environment = make_constant_environment(Rgb(1));
+    prepare_scene(scene);
+    return BssrdfTransport(scene, 0, *scene.materials[0].medium, {1}, "composite", Basis::shape);
+  };
+  const auto draw = [](const BssrdfTransport& transport, const SurfacePoint& exit, auto&& check) {
+    Sampler sampler(SamplerKind::independent, 3);
+    for (uint32_t k = 0; k < 500; ++k) {
+      sampler.start(0, 0, k);
+      if (const auto entry = transport.sample(exit, glm::normalize(Vec3(0.3, 0.1, 1)), sampler, 0))
+        check(*entry);
+    }
+  };
+  Scene plane = plane_scene(medium_material(Rgb(0.9, 0.7, 0.4), Rgb(0.001)));
+  const BssrdfTransport flat = transport_of(plane);
+  draw(flat, plane.objects[0].mesh.surface_point(0, Vec2(0.2, 0.3)),
+       [](const SubsurfaceEntry& entry) { CHECK_FALSE(entry.aim); });
+
+  Scene ball;
+  add(ball, make_sphere(0.003, 64), medium_material(Rgb(0.9, 0.7, 0.4), Rgb(0.001)));
+  const BssrdfTransport curved = transport_of(ball);
+  const auto top = ball.rays.closest_point(0, Vec3(0, 0, 0.003));
+  const SurfacePoint exit = ball.objects[0].mesh.surface_point(top->triangle, top->barycentric);
+  draw(curved, exit, [&](const SubsurfaceEntry& entry) {
+    REQUIRE(entry.aim);
+    const Vec3 n = entry.point.shading_normal, chord = entry.point.position - exit.position;
+    const Vec3 beyond = glm::normalize(chord - glm::dot(chord, n) * n);
+    const Rgb from_there = entry.aim->at(beyond), from_here = entry.aim->at(-beyond),
+              across = entry.aim->at(n);
+    for (int c = 0; c < 3; ++c) {
+      CHECK(from_there[c] > across[c] - 1e-12);
+      CHECK(from_here[c] < across[c] + 1e-12);
+      CHECK(from_here[c] >= 0);
+      // Less absorption means longer ways, which forget where they came from.
+      if (c > 0) CHECK(entry.aim->slope[c] > 0.98 * entry.aim->slope[c - 1]);
+    }
+  });
 }

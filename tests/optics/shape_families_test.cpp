@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/statistics.h"
+#include "optics/photon_walk.h"
 #include "optics/profile_fit.h"
 #include "optics/profile_table.h"
 #include "optics/shape_bake.h"
@@ -135,6 +137,55 @@ TEST_CASE("flat is exactly 1, and reached continuously") {
       }
     }
   }
+}
+
+TEST_CASE("light's aim: 0 on a half-space, the table's on bodies, reached continuously") {
+  const ShapeFamilies& shapes = baseline_shapes();
+  const auto aim = [&](double distance, double bend, double inverse_thickness, double albedo) {
+    PairShape pair;
+    pair.distance = distance;
+    pair.bend = bend;
+    pair.inverse_thickness = inverse_thickness;
+    return shapes.aim(pair, Rgb(albedo), Rgb(1)).r;
+  };
+  for (const double albedo : {0.0, 0.5, 0.9, 0.999, 1.0})
+    for (const double d : {1e-3, 0.1, 1.0, 10.0, 1000.0}) {
+      CHECK(aim(d, 0, 0, albedo) == 0);
+      CHECK(aim(d, 1e-5, 0, albedo) == 0);
+      if (albedo < 1) CHECK(aim(d, 0, 1 / (10.01 * diffusion_length(albedo, shapes.g())), albedo) == 0);
+      double before = 0;
+      for (int k = 0; k <= 600; ++k) {
+        const double now = aim(d, 1e-4 * k, 0, albedo);
+        CHECK(std::abs(now - before) < 0.02);
+        before = now;
+      }
+    }
+  // Independent walks: the mean of w . u where light leaves, over that of its square, three octaves.
+  Rng rng(71);
+  for (const double albedo : {0.5, 0.95})
+    for (const double from : {0.25, 1.0, 4.0}) {
+      RunningMoments slope;
+      double expected = 0, light = 0;
+      for (int k = 0; k < 40000; ++k) {
+        Photon photon;
+        photon.direction = sample_diffuse_entry(1.5, rng);
+        const WalkEnd end =
+            walk(HalfSpace(), WalkMedium{}, photon, rng, [](const Photon& p, Rng&) { return p.order < 300; });
+        const double rho = std::hypot(photon.position.x, photon.position.y);
+        const bool counts = end == WalkEnd::left && photon.order > 0 && rho > from && rho < 2 * from;
+        const double weight = counts ? std::pow(albedo, static_cast<double>(photon.order)) : 0;
+        const double b = aim(rho, 1, 0, albedo);
+        const Vec3 u = photon.position / std::max(rho, 1e-9);
+        const double along = 1.5 * (photon.direction.x * u.x + photon.direction.y * u.y);
+        // 0.2392: the mean of (w . u)^2 over the Fresnel-weighted cosine.
+        slope.add(weight * (along - 0.2392 * b));
+        expected += weight * 0.2392 * b;
+        light += weight;
+      }
+      INFO(albedo << " from " << from << ": " << slope.mean() << " +- " << slope.standard_error());
+      CHECK(expected > 0.05 * light);
+      CHECK(std::abs(slope.mean()) < 3.5 * slope.standard_error() + 0.03 * expected / 40000);
+    }
 }
 
 TEST_CASE("where nothing can be measured the factors stay moderate") {
