@@ -146,7 +146,8 @@ TEST_CASE("images under one-sided light: within 4 % of walks by light's aim, 10 
       walked += share * light.mean();
       variance += share * share * light.variance_of_mean();
       const PointShape at_exit(body.shape(xe), thickest_body);
-      for (const BodyCell& cell : BodyCells(body, xe).cells()) {
+      const BodyCells cells(body, xe);
+      for (const BodyCell& cell : cells.cells()) {
         const PairShape pair = pair_shape(cell.position, cell.shape, xe, at_exit);
         const double s = cell.area * baseline_profile().evaluate(albedo, pair.distance) *
                          baseline_shapes().factor(pair, Rgb(albedo), Rgb(1)).r;
