@@ -210,6 +210,33 @@ TEST_CASE("three channels at once are the channels one by one") {
         Approx(shapes.factor(ShapeFamily::ball, 1000 / 120.0, 3, 0.9)).epsilon(1e-5));
 }
 
+TEST_CASE("a ball, a cavity and a slab of the committed table come back bit for bit from their walks",
+          "[slow]") {
+  const ShapeTable& table = baseline_shape_table();
+  ShapeBakeOptions options;
+  options.photons = full_shape_photons;
+  options.seed = table.seed;
+  for (const auto& [family, size] :
+       {std::pair{ShapeFamily::ball, 7}, {ShapeFamily::cavity, 9}, {ShapeFamily::slab_near, 5}}) {
+    const double radius = ShapeGrid::size(size);
+    const PathTally tally =
+        body_tally(shape_body(family, radius), shape_walk_options(family, radius, options));
+    std::vector<double> factors;
+    int different = 0;
+    for (int row = 0; row < ShapeGrid::rows; ++row) {
+      const double albedo = ShapeGrid::albedo(row);
+      factors = shape_factors(family, radius, albedo, radial_energy_over_albedo(tally, albedo),
+                              baseline_profile(), factors);
+      for (int node = 0; node < ShapeGrid::nodes(family); ++node) {
+        const int16_t stored =
+            table.log2_factor[static_cast<std::size_t>(family)][ShapeTable::index(family, size, node, row)];
+        different += std::lround(factors[static_cast<std::size_t>(node)] / ShapeTable::step) != stored;
+      }
+    }
+    CHECK(different == 0);
+  }
+}
+
 TEST_CASE("tables of shapes survive writing and reading, and broken ones are refused") {
   const ShapeTable& table = baseline_shape_table();
   std::string bytes = encode_shape_table(table);
