@@ -58,6 +58,12 @@ class PackedRange {
   Vec3f codes(const Vec4f& sum) const {
     return (Vec3f(sum) / sum.w - Vec3f(low_.r, low_.g, low_.b)) * per_step_;
   }
+  /// The value nearest to an albedo of one channel that a code stands for.
+  float nearest(float albedo, int channel) const {
+    const auto low = static_cast<float>(low_[channel]);
+    const float code = std::round((albedo - low) * per_step_[channel]);
+    return static_cast<float>(low_[channel] + step_[channel] * static_cast<double>(code));
+  }
   PackedTexel pack(const Vec4f& sum, float codes_per_weight) const {
     const float weight = std::round(sum.w * codes_per_weight);
     if (!(weight > 0)) return {};

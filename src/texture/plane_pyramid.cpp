@@ -144,7 +144,9 @@ void PlanePyramid::add(const Draft& draft) {
   level.stride = draft.stride;
   level.plane = static_cast<std::ptrdiff_t>(draft.planes.front().size());
   level.origin = static_cast<std::ptrdiff_t>(samples_.size() + draft.index(0, 0));
-  for (const auto& plane : draft.planes) samples_.insert(samples_.end(), plane.begin(), plane.end());
+  for (std::size_t c = 0; c < channels_; ++c)
+    for (const float sample : draft.planes[c])
+      samples_.push_back(range_.nearest(sample, static_cast<int>(c)));
   levels_.push_back(level);
 }
 
@@ -156,6 +158,13 @@ PlanePyramid::PlanePyramid(const TexelArray& texels) : channels_(is_grey(texels)
     for (int y = 0; y < texels.height; ++y)
       for (int x = 0; x < texels.width; ++x)
         last.planes[c][last.index(x, y)] = texels.at(x, y)[static_cast<int>(c)];
+  Rgb least(std::numeric_limits<double>::infinity()), largest = -1 * least;
+  for (const Vec4f& texel : texels.texels)
+    for (int c = 0; c < 3; ++c) {
+      least[c] = std::min(least[c], static_cast<double>(texel[c]));
+      largest[c] = std::max(largest[c], static_cast<double>(texel[c]));
+    }
+  range_ = PackedRange(least, largest);
   fill_margin(last);
   add(last);
   const double longest = std::max(texels.width, texels.height);

@@ -10,9 +10,10 @@
 namespace alabaster {
 
 /// The isotropic averages of GaussianPyramid, several at once, for a texture that repeats both ways and is
-/// surface everywhere, as those of flat scenes are. Levels and kernels are the same, in float, but a level
-/// holds a plane per channel (a single one where the texture is grey) and no weights, so that the eight taps
-/// of a row are one register; and what the kernels' shapes take, four Gaussians take together. Thread-safe.
+/// surface everywhere, as those of flat scenes are. Levels, kernels and values (rounded to the
+/// same 16 bits, but held as floats) are the same, but a level holds a plane per channel (a single one where
+/// the texture is grey) and no weights, so that the eight taps of a row are one register; and what the
+/// kernels' shapes take, four Gaussians take together. Thread-safe.
 class PlanePyramid {
  public:
   explicit PlanePyramid(const TexelArray& texels);
@@ -42,6 +43,7 @@ class PlanePyramid {
   };
   static constexpr std::size_t most_levels = 16;
   std::size_t channels_;
+  PackedRange range_;
   std::vector<float> samples_;
   std::vector<Level> levels_;
   std::array<double, most_levels> level_from_;  // smallest total variance served by level 1, 2, ...
