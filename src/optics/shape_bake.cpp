@@ -123,8 +123,9 @@ Eigen::VectorXd smooth(ShapeFamily family, double size, const Bins& bins, const 
   return before + matrix.ldlt().solve(right);
 }
 
-// What all bins hold together is better known than any of them: the factors are scaled to it. In full where it
-// is known to 1 %, less where it is as uncertain as the factors are (about a tenth), not at all beyond 20 %.
+// What all bins hold together is better known than any of them: the factors are scaled to it. In full where
+// it is known to 1 %, less where it is as uncertain as the factors are (about a tenth), not at all beyond 20
+// %.
 double scale_to_total(const Bins& bins, const Eigen::VectorXd& nodes) {
   double sum = 0;
   for (std::size_t k = 0; k < bins.position.size(); ++k)
