@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "cli/commands.h"
 #include "cli/study_options.h"
 #include "core/cancellation.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "study/geodesic_chart.h"
 #include "study/pyramid_chart.h"
@@ -29,6 +32,14 @@ void run_study(const ChartSettings& settings, void (*chart)(const Options&)) {
   options.seed = settings.study.seed;
   chart(options);
   finish_study(settings.study.output + "/chart.html", wall_seconds() - start);
+}
+
+// An option that changes nothing would look as if it did.
+void refuse_options_of_speed(const CLI::App& command, const std::string& what) {
+  for (const char* option :
+       {"--scenes", "--methods", "--budgets", "--resolution", "--reference-noise", "--cache"})
+    if (command.count(option) > 0)
+      throw InputError(option, fmt::format("means nothing for --what {}; leave it out", what));
 }
 
 void run(ChartSettings& settings) {
@@ -68,7 +79,10 @@ void add_chart_command(CLI::App& app) {
   command->add_option("--budgets", settings->budgets, "quick (20 minutes) or full (hours)")
       ->capture_default_str();
   add_study_options(*command, settings->study);
-  command->callback([settings] { run(*settings); });
+  command->callback([settings, command] {
+    if (settings->what != "speed") refuse_options_of_speed(*command, settings->what);
+    run(*settings);
+  });
 }
 
 }  // namespace alabaster

@@ -100,3 +100,12 @@ TEST_CASE("Ctrl-C and SIGTERM end what simulates or generates at once, with one 
       CHECK_FALSE(fs::exists(folder / "chart" / "chart.html"));
     }
 }
+
+TEST_CASE("chart refuses options that mean nothing for the study asked for") {
+  const ScratchFolder folder;
+  const ProgramRun run =
+      run_program({"chart", "--what", "geodesic", "--scenes", "sphere_3", "-o", (folder / "out").string()});
+  CHECK(run.exit_code == 1);
+  CHECK(run.error_lines() == 1);
+  CHECK(run.err.find("--scenes") != std::string::npos);
+}
