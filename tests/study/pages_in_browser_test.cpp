@@ -104,3 +104,8 @@ TEST_CASE("the page of geodesic distances works in a browser", "[slow]") {
   if (skipped()) return;
   look({"chart", "--what", "geodesic"}, "chart.html");
 }
+
+TEST_CASE("the page of pyramids works in a browser", "[slow]") {
+  if (skipped()) return;
+  look({"chart", "--what", "pyramids"}, "chart.html");
+}
