@@ -300,12 +300,7 @@ void GaussianPyramid::add_coarser_levels(Draft last) {
     const int h = coarser_extent(height(), last.extent[1], spacing, wrap_[1]);
     if (w == last.extent[0] && h == last.extent[1]) continue;
     Draft next = coarser(last, w, h);
-    double from = 0;
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      if (next.extent[axis] != last.extent[axis])
-        from = std::max(from, (level_blur + narrowest_kernel) /
-                                  (next.samples_per_texel[axis] * next.samples_per_texel[axis]));
-    level_from_.push_back(from);
+    level_from_.push_back(served_from(next, last));
     add(next);
     last = std::move(next);
   }

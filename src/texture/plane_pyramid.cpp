@@ -174,12 +174,7 @@ PlanePyramid::PlanePyramid(const TexelArray& texels) : channels_(is_grey(texels)
     const int h = coarser_extent(texels.height, last.extent[1], spacing, Wrap::repeat);
     if (w == last.extent[0] && h == last.extent[1]) continue;
     Draft next = coarser(last, w, h);
-    double from = 0;
-    for (std::size_t axis = 0; axis < 2; ++axis)
-      if (next.extent[axis] != last.extent[axis])
-        from = std::max(from, (level_blur + narrowest_kernel) /
-                                  (next.samples_per_texel[axis] * next.samples_per_texel[axis]));
-    level_from_[levels_.size() - 1] = from;
+    level_from_[levels_.size() - 1] = served_from(next, last);
     add(next);
     last = std::move(next);
   }

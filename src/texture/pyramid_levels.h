@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "texture/texture.h"
@@ -74,6 +75,17 @@ inline int coarser_extent(int finest, int current, double spacing, Wrap wrap) {
   const int next = std::max(least, static_cast<int>(std::ceil(finest / spacing)));
   const bool worth_it = 1.8 * next * next <= static_cast<double>(current) * current;
   return next < current && worth_it ? next : current;
+}
+
+// The smallest total variance, in texels of level 0 squared, that a level serves which follows `last`.
+template <class Draft>
+double served_from(const Draft& level, const Draft& last) {
+  double from = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (level.extent[axis] != last.extent[axis])
+      from = std::max(from, (level_blur + narrowest_kernel) /
+                                (level.samples_per_texel[axis] * level.samples_per_texel[axis]));
+  return from;
 }
 
 }  // namespace alabaster
