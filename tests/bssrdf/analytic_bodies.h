@@ -139,6 +139,23 @@ inline AnalyticBody make_torus_body(std::string name, double ring, double tube) 
   return body;
 }
 
+/// The medium outside a ball.
+inline AnalyticBody make_cavity_body(std::string name, double radius) {
+  AnalyticBody body;
+  body.name = std::move(name);
+  body.normal = [](const Vec3& p) { return -glm::normalize(p); };
+  body.patches = {[radius](Vec2 s) {
+    const double z = 1 - 2 * s.y, azimuth = 2 * pi * s.x, r = std::sqrt(std::max(0.0, 1 - z * z));
+    return radius * Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z);
+  }};
+  body.onto = [radius](const Vec3& p) { return radius * glm::normalize(p); };
+  body.boundary = [radius](const Vec3& p, const Vec3& w) {
+    const double b = -glm::dot(p, w), c = std::max(glm::dot(p, p) - radius * radius, 0.0);
+    return b > 0 && b * b > c ? c / (b + std::sqrt(b * b - c)) : HUGE_VAL;
+  };
+  return body;
+}
+
 /// The blob of the study scenes (geometry/shapes.h): |p| = radius (1 + bump h(p / |p|)), |h| <= 1.
 inline AnalyticBody make_blob_body(std::string name, double radius, double bump) {
   struct Bumps {
@@ -177,22 +194,31 @@ inline AnalyticBody make_blob_body(std::string name, double radius, double bump)
     return onto(Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z));
   }};
   body.boundary = [=](const Vec3& p, const Vec3& w) {
-    // No step reaches the surface: its slope against the sphere is below 1.2 where bump <= 0.2.
-    const double safe = (1 - bump) * radius;
+    // Along the ray f = radius (1 + bump h) - |q| bends down by no more than `bend` outside the sphere of
+    // radius `core`, all of which is inside: of the waves |h''| <= 22.3 / |q|^2, of the rest 1 / |q|. The
+    // root of f + f' s - bend s^2 / 2 is a step that cannot miss the surface, and near it Newton's.
+    const double core = 0.9 * (1 - bump) * radius;
+    const double bend = 22.3 * bump * radius / (core * core) + 1 / core;
     double t = 0;
-    for (int step = 0; step < 200; ++step) {
+    for (int step = 0; step < 500; ++step) {
       const Vec3 q = p + t * w;
-      const double length = glm::length(q);
-      if (length < 0.9 * safe) {
-        const double along = glm::dot(q, w);
-        t += std::sqrt(along * along + safe * safe - length * length) - along;
+      const double length = glm::length(q), along = glm::dot(q, w);
+      const double aside = length * length - along * along;  // squared, of the ray from the centre
+      if (length <= core * (1 + 1e-9)) {
+        t += std::sqrt(std::max(0.0, core * core - aside)) - along + 1e-8 * radius;
         continue;
       }
       const Bumps bumps = bumps_at(q / length);
       const double inside = radius * (1 + bump * bumps.height) - length;
-      if (inside < 1e-6 * radius && glm::dot(q / length - (radius / length) * bump * bumps.slope, w) > 0)
-        break;
-      t += std::max(0.6 * inside, 1e-7 * radius);
+      const double slope = (radius / length) * bump * glm::dot(bumps.slope, w) - along / length;
+      // A ray along the surface takes a step at least, or one that a reflection leaves there stays for ever.
+      if (step > 0 && inside < 1e-6 * radius && slope < 0) break;
+      const double f = std::max(inside, 0.0), root = std::sqrt(slope * slope + 2 * bend * f);
+      double forward = slope > 0 ? (slope + root) / bend : 2 * f / (root - slope);
+      // The bound holds as far as the core.
+      if (along < 0 && aside < core * core)
+        forward = std::min(forward, -along - std::sqrt(core * core - aside) + 1e-9 * radius);
+      t += std::max(forward, 1e-6 * radius);
     }
     return t;
   };

@@ -24,6 +24,23 @@ std::string with_size(const char* name, double size) {
   return text;
 }
 
+// Where the larger curvature is largest, the smaller one's mean with it smallest, their product smallest.
+Vec3 extreme_place(const AnalyticBody& body, const std::string& where) {
+  Rng rng(5);
+  Vec3 best(0);
+  double most = -HUGE_VAL;
+  for (int k = 0; k < 3000; ++k) {
+    const Vec3 p = body.onto(body.patches[0](Vec2(rng.uniform(), rng.uniform())));
+    const LocalShape shape = body.shape(p);
+    const double a = shape.curvature_min, b = shape.curvature_max;
+    const double score = where == "bump" ? a + b : where == "hollow" ? -a - b : -a * b;
+    if (score <= most) continue;
+    most = score;
+    best = p;
+  }
+  return best;
+}
+
 std::vector<Place> places() {
   std::vector<Place> all;
   const auto add = [&](const AnalyticBody& body, const Vec3& exit, const char* where) {
@@ -50,6 +67,12 @@ std::vector<Place> places() {
     add(torus, Vec3(ring + tube, 0.01, 0.02 * tube), "outside");
     add(torus, Vec3(ring, tube, 0.02 * tube), "top");
     add(torus, Vec3(ring - tube, 0.01 * tube, 0.02 * tube), "saddle");
+  }
+  for (const double r : {10.0, 3.0, 1.0})
+    add(make_cavity_body(with_size("cavity", r), r), Vec3(r, 0.3 * r, 0.1 * r), "");
+  for (const double r : {30.0, 10.0}) {
+    const AnalyticBody blob = make_blob_body(with_size("blob", r), r, 0.2);
+    for (const char* where : {"bump", "hollow", "saddle"}) add(blob, extreme_place(blob, where), where);
   }
   return all;
 }

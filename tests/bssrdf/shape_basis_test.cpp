@@ -109,7 +109,9 @@ TEST_CASE("radiosity of spheres and slabs within 2 % of walks in them, of others
                         {make_slab_body("slab 2", 2, 40), Vec3(0.01, 0.02, 0), 0.02},
                         {make_ellipsoid_body("prolate 10", Vec3(10, 30, 10)), Vec3(10, 1, 0.5), 0.03},
                         {make_ellipsoid_body("oblate 3, flat", Vec3(9, 3, 9)), Vec3(0.1, 3, 0.1), 0.08},
-                        {make_torus_body("torus 9 / 3, outside", 9, 3), Vec3(12, 0.01, 0.02), 0.08}};
+                        {make_torus_body("torus 9 / 3, outside", 9, 3), Vec3(12, 0.01, 0.02), 0.08},
+                        {make_cavity_body("cavity 3", 3), Vec3(3, 0.3, 0.2), 0.03},
+                        {make_blob_body("blob 10", 10, 0.2), Vec3(1, 2, 10), 0.08}};
   for (const Case& c : cases) {
     const Comparison result = compare(c.body, c.body.onto(c.exit), 15000);
     for (std::size_t a = 1; a < body_albedos.size(); ++a)
