@@ -1,5 +1,6 @@
 #include "integrators/bssrdf_transport.h"
 
+#include "geometry/tangent.h"
 #include "optics/fresnel.h"
 #include "optics/profile_store.h"
 #include "texture/material_map.h"
@@ -51,15 +52,14 @@ std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit,
                                                        const Sampler& sampler, uint32_t occurrence) const {
   probe_->fetch(exit.triangle);
   const BssrdfPoint from = model_->medium().point(exit);
-  const auto entry = probe_->sample_entry(from, sampler, occurrence);
+  const auto entry = probe_->sample_entry(from, sampler, occurrence, viewer);
   if (!entry || entry->weight.is_black()) return std::nullopt;
   SubsurfaceEntry result{entry->point.surface, std::nullopt, std::nullopt, entry->weight * lobe_};
   const Rgb slope = model_->aim(entry->point, from);
   if (slope.is_black()) return result;
   const Vec3 chord = glm::normalize(result.point.position - exit.position);
-  const auto within = [&](const Vec3& normal) { return chord - glm::dot(chord, normal) * normal; };
-  result.aim = LightAim{Rgb(1) - glm::dot(viewer, within(exit.shading_normal)) * slope, slope,
-                        within(result.point.shading_normal)};
+  const double away = glm::dot(viewer, within_surface(chord, exit.shading_normal));
+  result.aim = LightAim{Rgb(1) - away * slope, slope, within_surface(chord, result.point.shading_normal)};
   return result;
 }
 

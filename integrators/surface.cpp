@@ -1,6 +1,7 @@
 #include "integrators/surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -18,6 +19,10 @@ namespace {
 constexpr double default_angular_size = pi / 180;
 // Chains of mirrors and internal reflections end here at the latest.
 constexpr int max_specular_chain = 64;
+// Directions of which one is followed where light's aim has a say. docs/probe_sampling.md has the figures.
+constexpr int aimed_looks = 2;
+// Radiance that may come from where the environment is dark, in units of its mean.
+constexpr double unseen_share = 0.1;
 
 /// The environment as a few directions, drawn by its own importance.
 ExpectedLight expected_light(const Environment& environment) {
@@ -94,6 +99,12 @@ struct SurfaceIntegrator::Arrival {
   double weight_against(double light_pdf) const { return pdf > 0 ? power_heuristic(pdf, light_pdf) : 1; }
 };
 
+struct SurfaceIntegrator::Look {
+  Vec3 direction{0};
+  double pdf = 0;     // per solid angle, of a single draw
+  double factor = 0;  // times the radiance from there: an estimate of the integral of T(cos) L cos
+};
+
 SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& options)
     : scene_(scene),
       options_(options),
@@ -110,6 +121,9 @@ SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& o
   }
   if (options.transport != Transport::bssrdf) check_media_apart(scene);
   if (scene.environment && scene.lights.empty()) expected_light_ = expected_light(*scene.environment);
+  if (scene.environment)
+    if (const double mean = scene.environment->mean_radiance().mean(); mean > 0)
+      unseen_radiance_ = unseen_share * mean;
   prepare_bodies();
 }
 
@@ -401,8 +415,22 @@ Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_no
   Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position) * aim.at(Vec3(0));
   if (near_lights_.has_lights())
     sum += entering_from_light(point, mirror_normal, interface, vertex, path, aim);
+  const bool aimed = scene_.environment && !aim.slope.is_black();
+  const Look seen = aimed ? look_aimed(point, mirror_normal, interface, aim, vertex, path)
+                          : look(point, mirror_normal, interface,
+                                 path.sampler.get_2d(Dimension::diffuse_direction, vertex));
+  const Rgb value = aim.at(seen.direction);
+  if (seen.factor <= 0 || value.is_black()) return sum;
+  Arrival next =
+      arrival.scattered(seen.pdf, near_lights_, point, weight * inv_pi * seen.factor * value.max());
+  ++next.bounces;
+  next.chain = 0;
+  return sum + seen.factor * value * incoming(leaving(point, seen.direction), next, path);
+}
+
+SurfaceIntegrator::Look SurfaceIntegrator::look(const SurfacePoint& point, const Vec3& mirror_normal,
+                                                const Interface& interface, Vec2 u) const {
   const Vec3& normal = point.shading_normal;
-  const Vec2 u = path.sampler.get_2d(Dimension::diffuse_direction, vertex);
   HemisphereSample chosen;
   if (scene_.environment) {
     chosen = scene_.environment->sample_hemisphere(normal, u);
@@ -411,15 +439,35 @@ Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_no
     chosen.pdf = glm::dot(normal, chosen.direction) * inv_pi;
   }
   const double cosine = glm::dot(normal, chosen.direction);
-  if (!(chosen.pdf > 0) || cosine <= 0 || glm::dot(chosen.direction, point.geometric_normal) <= 0) return sum;
-  const double factor =
-      interface.transmission(glm::dot(mirror_normal, chosen.direction)) * cosine / chosen.pdf;
-  const Rgb aimed = aim.at(chosen.direction);
-  if (factor <= 0 || aimed.is_black()) return sum;
-  Arrival next = arrival.scattered(chosen.pdf, near_lights_, point, weight * inv_pi * factor * aimed.max());
-  ++next.bounces;
-  next.chain = 0;
-  return sum + factor * aimed * incoming(leaving(point, chosen.direction), next, path);
+  if (!(chosen.pdf > 0) || cosine <= 0 || glm::dot(chosen.direction, point.geometric_normal) <= 0) return {};
+  const double transmission = interface.transmission(glm::dot(mirror_normal, chosen.direction));
+  return {chosen.direction, chosen.pdf, transmission * cosine / chosen.pdf};
+}
+
+// Resampling (Talbot et al. 2005): whatever is promised, it is unbiased, since nothing that may send light is
+// promised none. The directions are strata of each other.
+SurfaceIntegrator::Look SurfaceIntegrator::look_aimed(const SurfacePoint& point, const Vec3& mirror_normal,
+                                                      const Interface& interface, const LightAim& aim,
+                                                      uint32_t vertex, const Path& path) const {
+  const Vec2 u = path.sampler.get_2d(Dimension::diffuse_direction, vertex);
+  std::array<Look, aimed_looks> looks;
+  std::array<double, aimed_looks> promises{};
+  double sum = 0;
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const Vec2 turned = u + static_cast<double>(k) / aimed_looks;
+    looks[k] = look(point, mirror_normal, interface, turned - glm::floor(turned));
+    if (looks[k].factor <= 0) continue;
+    const double radiance = scene_.environment->radiance(looks[k].direction).mean() + unseen_radiance_;
+    promises[k] = looks[k].factor * aim.at(looks[k].direction).mean() * radiance;
+    sum += promises[k];
+  }
+  if (!(sum > 0)) return {};
+  double left = path.sampler.get_1d(Dimension::light_lobe, vertex) * sum;
+  std::size_t k = 0;
+  while (k + 1 < looks.size() && left >= promises[k]) left -= promises[k++];
+  if (!(promises[k] > 0)) return {};
+  looks[k].factor *= sum / (aimed_looks * promises[k]);
+  return looks[k];
 }
 
 Rgb SurfaceIntegrator::entering_from_light(const SurfacePoint& point, const Vec3& mirror_normal,

@@ -102,6 +102,11 @@ class SurfaceIntegrator final : public Integrator {
                           uint32_t vertex, const Path& path, const LightAim& aim) const;
 
   Rgb unscattered_share(const Body& body, const Ray& ray, double distance, Rng rng) const;
+  struct Look;  // where entering() looks for the environment and other surfaces
+  Look look(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface, Vec2 u) const;
+  /// One of several, by what light and its aim promise there.
+  Look look_aimed(const SurfacePoint& point, const Vec3& mirror_normal, const Interface& interface,
+                  const LightAim& aim, uint32_t vertex, const Path& path) const;
   /// Density of the direction in which entering() looks for the environment and other surfaces.
   double entering_pdf(const Vec3& normal, const Vec3& direction) const;
 
@@ -123,6 +128,7 @@ class SurfaceIntegrator final : public Integrator {
   LightGuide guide_;
   std::optional<ExpectedLight> expected_light_;  // where the environment is all the light there is
   double offset_;                                // m: how far rays start off a surface
+  double unseen_radiance_ = 1;                   // what other surfaces may be expected to send
   bool stochastic_opacity_ = false;
   std::vector<Interface> interfaces_;  // per material
   std::vector<std::unique_ptr<Body>> bodies_;

@@ -34,16 +34,29 @@ ExpectedLight::ExpectedLight(std::span<const Distant> lights) {
     for (int x = 0; x < side; ++x) {
       const Vec3 normal = from_square(Vec2(x + 0.5, y + 0.5) * (2.0 / side) - 1.0);
       double sum = 0;
-      for (const Distant& light : lights)
-        sum += std::max(0.0, glm::dot(normal, light.direction)) * light.irradiance;
+      Vec3 towards(0);
+      for (const Distant& light : lights) {
+        const double irradiance = std::max(0.0, glm::dot(normal, light.direction)) * light.irradiance;
+        sum += irradiance;
+        towards += irradiance * light.direction;
+      }
+      if (sum > 0) direction_[place] = Vec3f(towards / sum);
       relative_[place++] = static_cast<float>(mean > 0 ? std::max(least, sum / mean) : 1);
     }
 }
 
-double ExpectedLight::relative(const Vec3& normal) const {
+std::size_t ExpectedLight::cell(const Vec3& normal) {
   const Vec2 p = (to_square(normal) + 1.0) * (0.5 * side);
-  const auto cell = [](double q) { return static_cast<std::size_t>(std::clamp(q, 0.0, side - 0.5)); };
-  return double{relative_[cell(p.y) * side + cell(p.x)]};
+  const auto step = [](double q) { return static_cast<std::size_t>(std::clamp(q, 0.0, side - 0.5)); };
+  return step(p.y) * side + step(p.x);
+}
+
+double ExpectedLight::relative(const Vec3& normal) const {
+  return double{relative_[cell(normal)]};
+}
+
+Vec3 ExpectedLight::direction(const Vec3& normal) const {
+  return Vec3(direction_[cell(normal)]);
 }
 
 }  // namespace alabaster

@@ -7,6 +7,7 @@
 
 #include "bssrdf/smoothed_normals.h"
 #include "core/frame.h"
+#include "geometry/tangent.h"
 
 namespace alabaster {
 namespace {
@@ -40,6 +41,10 @@ constexpr double full_worth = 1;
 /// the one around.
 constexpr double rough = 0.05;
 constexpr double contrasting = 0.2;
+/// So they are where the slope of light's aim exceeds this; no entry counts as worth less for its aim than
+/// the second figure.
+constexpr double aimed_slope = 0.1;
+constexpr double least_aim = 0.25;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -53,9 +58,6 @@ bool decide(double& u, double probability) {
 
 double half_turned(double x) {
   return x < 0.5 ? x + 0.5 : x - 0.5;
-}
-Vec2 half_turned(Vec2 u) {
-  return {half_turned(u.x), half_turned(u.y)};
 }
 
 /// Radii over a disk whose density falls as 1 / (1 + rho^2)^2 per area, up to a factor.
@@ -176,7 +178,8 @@ void ProbeSampler::fetch(uint32_t triangle) const {
   if (!typical_.empty()) __builtin_prefetch(&typical_[triangle]);
 }
 
-std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
+std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point,
+                                                        const std::optional<Vec3>& viewer) const {
   const Rgb typical = typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
 
@@ -188,7 +191,15 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   const std::array<Vec3, 3> directions = tilted_axes(facing);
   for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis(exit, directions[a]);
   add_components(exit);
-  exit.probes = varied(exit, facing) ? 2 : 1;
+  if (viewer && body_light_) {
+    PairShape near;  // where aim is strong
+    near.distance = 1 / model_.medium().sigma_t.mean();
+    near.bend = std::sqrt(point.shape.bend_square);
+    near.inverse_thickness = point.shape.inverse_thickness;
+    exit.aimed = mean_aim(exit, near) > aimed_slope;
+    exit.viewer = within_surface(*viewer, point.surface.shading_normal);
+  }
+  exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;
   if (target_.light != nullptr) exit.usual_light = std::sqrt(target_.light->relative(facing));
   return result;
 }
@@ -395,11 +406,26 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
     const PairShape pair = model_.pair(candidate.surface.position, candidate.shape,
                                        exit.point.surface.position, exit.point.shape);
     value *= medium.shape->families->factor(pair, Rgb(exit.typical.mean()), Rgb(medium.sigma_t.mean())).r;
+    if (exit.aimed) value *= expected_aim(exit, candidate, pair);
   }
   value *= candidate.albedo.mean() / exit.typical.mean();
   if (target_.light != nullptr)
     value *= target_.light->relative(candidate.surface.shading_normal) / exit.usual_light;
   return value;
+}
+
+double ProbeSampler::mean_aim(const Exit& exit, const PairShape& pair) const {
+  const BssrdfMedium& medium = model_.medium();
+  return medium.shape->families->aim(pair, Rgb(exit.typical.mean()), Rgb(medium.sigma_t.mean())).r;
+}
+
+double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const {
+  const Vec3 along = (candidate.surface.position - exit.point.surface.position) / pair.distance;
+  const Vec3& normal = candidate.surface.shading_normal;
+  double towards = -glm::dot(exit.viewer, along);
+  if (target_.light != nullptr)
+    towards += glm::dot(target_.light->direction(normal), within_surface(along, normal));
+  return std::max(least_aim, 1 + mean_aim(exit, pair) * towards);
 }
 
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {
@@ -411,14 +437,16 @@ EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, d
   return entry;
 }
 
-std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, const EntryRandom& u) const {
-  const std::optional<Exit> exit = prepare(point);
+std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, const EntryRandom& u,
+                                                      const std::optional<Vec3>& viewer) const {
+  const std::optional<Exit> exit = prepare(point, viewer);
   if (!exit) return std::nullopt;
   static thread_local std::vector<Candidate> candidates;
   candidates.clear();
   draw(*exit, u, candidates);
-  // The second probe is the first one turned: two strata of every number.
-  if (exit->probes == 2) draw(*exit, {half_turned(u.choice), half_turned(u.disk), 0}, candidates);
+  // The second probe lies on the other side of the exit: what light's aim gives to the one it takes from the
+  // other.
+  if (exit->probes == 2) draw(*exit, {u.choice, Vec2(u.disk.x, half_turned(u.disk.y)), 0}, candidates);
   double sum = 0;
   for (const Candidate& c : candidates) sum += c.importance;
   const double worth = sum / exit->probes;
@@ -436,12 +464,13 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, 
 }
 
 std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
-                                                      uint32_t occurrence) const {
+                                                      uint32_t occurrence,
+                                                      const std::optional<Vec3>& viewer) const {
   EntryRandom u;
   u.choice = sampler.get_2d(Dimension::entry_strategy, occurrence);
   u.disk = sampler.get_2d(Dimension::entry_radius, occurrence);
   u.pick = sampler.get_1d(Dimension::entry_hit, occurrence);
-  return sample_entry(exit, u);
+  return sample_entry(exit, u, viewer);
 }
 
 std::size_t ProbeSampler::sample_entries(const BssrdfPoint& point, const EntryRandom& u,

@@ -89,7 +89,9 @@ class ProbeSampler {
     std::array<Axis, 3> axes;
     std::array<Component, 6> components;
     int component_count = 0;
-    int probes = 1;  // that one entry is chosen from, at most 2
+    int probes = 1;      // that one entry is chosen from, at most 2
+    bool aimed = false;  // whether that choice knows of light's aim
+    Vec3 viewer{0};      // towards the camera, the part within the surface
     Crossing crossing;
     double near_limit = 0;   // m: beyond it along the chord, only some probes look
     Rgb typical;             // the albedo that draws are aimed at
@@ -97,8 +99,9 @@ class ProbeSampler {
   };
   /// Asks memory for what prepare() will read of an exit on that triangle.
   void fetch(uint32_t triangle) const;
-  /// Nothing where no light can leave, because the albedo is 0.
-  std::optional<Exit> prepare(const BssrdfPoint& exit) const;
+  /// Nothing where no light can leave, because the albedo is 0. `viewer` is the unit vector towards the
+  /// camera, where entries are to be chosen with light's aim in mind (Bssrdf::aim).
+  std::optional<Exit> prepare(const BssrdfPoint& exit, const std::optional<Vec3>& viewer = {}) const;
 
   /// Chooses a probe without tracing it; `choice` in [0, 1) picks axis and component. Nothing when the chord
   /// misses the object's bounding sphere.
@@ -108,10 +111,12 @@ class ProbeSampler {
 
   /// Draws ONE entry among all hits of the probe, so that one shadow ray serves it. Nothing when there is
   /// none: then the estimate is 0.
-  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const EntryRandom& u) const;
+  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const EntryRandom& u,
+                                          const std::optional<Vec3>& viewer = {}) const;
   /// The same with the sampler's dimensions; `occurrence` tells draws for one pixel sample apart.
   std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
-                                          uint32_t occurrence = 0) const;
+                                          uint32_t occurrence = 0,
+                                          const std::optional<Vec3>& viewer = {}) const;
   /// All entries of one draw. Where they are more than `entries` holds, a random part of them, weighted up.
   /// Returns how many were filled.
   std::size_t sample_entries(const BssrdfPoint& exit, const EntryRandom& u,
@@ -131,6 +136,9 @@ class ProbeSampler {
   void add_channel(Exit& exit, int channel, double share) const;
   void add_crossing(Exit& exit) const;
   double importance(const Exit& exit, const Candidate& candidate, double distance) const;
+  /// What light's aim makes of an entry there, as far as that may be expected; never 0.
+  double expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const;
+  double mean_aim(const Exit& exit, const PairShape& pair) const;
   double radius_density(const Exit& exit, double radius) const;
   struct Part;
   static Part near_part(const Exit& exit, double radius);

@@ -42,3 +42,14 @@ TEST_CASE("without light, or with the same from all sides, all entries may expec
   const ExpectedLight uniform(lights);
   for (int i = 0; i < 100; ++i) CHECK(uniform.relative(uniform_direction(rng)) == Approx(1).margin(0.06));
 }
+
+TEST_CASE("light's expected direction is the mean by irradiance of what shines on the surface", "[bssrdf]") {
+  const Vec3 left(-0.8, 0, 0.6), right(0.8, 0, 0.6), below(0, 0, -1);
+  using Distant = ExpectedLight::Distant;
+  const ExpectedLight light(std::array{Distant{left, 3}, Distant{right, 1}, Distant{below, 5}});
+  // Facing up: 3/4 of the light comes from the left, nothing from below. A cell of the map is 0.12 wide.
+  const Vec3 up = light.direction(Vec3(0, 0, 1));
+  CHECK(glm::distance(up, 0.75 * left + 0.25 * right) < 0.12);
+  CHECK(glm::distance(light.direction(glm::normalize(Vec3(-1, 0, 0.2))), left) < 1e-6);
+  CHECK(glm::length(ExpectedLight({}).direction(Vec3(0, 0, 1))) == 0);
+}

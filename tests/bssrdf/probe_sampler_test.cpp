@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bssrdf/basis.h"
@@ -10,6 +11,7 @@
 #include "core/rng.h"
 #include "core/statistics.h"
 #include "geometry/shapes.h"
+#include "geometry/tangent.h"
 #include "support/analytic_albedo.h"
 #include "support/analytic_profile.h"
 #include "support/mesh_integral.h"
@@ -133,13 +135,14 @@ TEST_CASE("one entry, and all entries, are unbiased for the integral over the su
 
       const ExpectedLight light(std::array{ExpectedLight::Distant{glm::normalize(Vec3(1, 2, 3)), 1}});
       ProbeTarget target = body.target();
-      target.light = &light;  // a guide: it must not matter
+      target.light = &light;  // guides, as the viewer is: they must not matter
+      const Vec3 viewer = glm::normalize(Vec3(-2, 1, 1));
       const ProbeSampler sampler(*model, target);
       RunningMoments one, all;
       Rng rng(17);
       std::array<EntrySample, 2> entries;  // few, so that picking among more is tested as well
       for (int i = 0; i < 8000; ++i) {
-        const auto entry = sampler.sample_entry(exit, entry_random(rng));
+        const auto entry = sampler.sample_entry(exit, entry_random(rng), viewer);
         one.add(entry ? entry->weight.mean() * irradiance(entry->point.surface.position) : 0);
         const std::size_t count = sampler.sample_entries(exit, entry_random(rng), entries);
         double sum = 0;
@@ -152,4 +155,49 @@ TEST_CASE("one entry, and all entries, are unbiased for the integral over the su
       CHECK(two_sided_normal_p_value((all.mean() - exact) / all.standard_error()) > sidak(0.01, tests));
     }
   }
+}
+
+TEST_CASE("a choice of entries that knows viewer and light takes most of the noise of light's aim away",
+          "[bssrdf]") {
+  // A ball lit from the left and seen from the right: entries on the left have little of their light aimed at
+  // the exit and little of that at the viewer, entries on the right much of both.
+  Body body(make_sphere(5, 40));
+  const AnalyticProfile profile;
+  const CosineAlbedo albedo(Rgb(0.9), Rgb(0));
+  const auto model = make_bssrdf("homogeneous", {&profile, Rgb(1), &albedo, body.shape()}, {});
+  const Vec3 towards_light = glm::normalize(Vec3(-1, 0, 1)), viewer = glm::normalize(Vec3(1, 0, 1));
+  const ExpectedLight light(std::array{ExpectedLight::Distant{towards_light, 1}});
+  ProbeTarget target = body.target();
+  target.light = &light;
+  const ProbeSampler sampler(*model, target);
+  const auto top = body.rays.closest_point(0, Vec3(0, 0, 5));
+  const BssrdfPoint exit = model->medium().point(body.mesh.surface_point(top->triangle, top->barycentric));
+  const auto worth = [&](const EntrySample& entry) {
+    const Vec3 u = glm::normalize(entry.point.surface.position - exit.surface.position);
+    const Vec3 n = entry.point.surface.shading_normal;
+    const double aimed = glm::dot(towards_light, within_surface(u, n)) -
+                         glm::dot(viewer, within_surface(u, exit.surface.shading_normal));
+    return entry.weight.mean() * std::max(0.0, glm::dot(n, towards_light)) *
+           std::max(0.0, 1 + model->aim(entry.point, exit).mean() * aimed);
+  };
+  Rng rng(29);
+  const auto variances = [&](const std::optional<Vec3>& seen_from) {
+    RunningMoments of_batches;
+    for (int batch = 0; batch < 40; ++batch) {
+      RunningMoments moments;
+      for (int i = 0; i < 500; ++i) {
+        const auto entry = sampler.sample_entry(exit, entry_random(rng), seen_from);
+        moments.add(entry ? worth(*entry) : 0);
+      }
+      of_batches.add(moments.variance());
+    }
+    return of_batches;
+  };
+  const RunningMoments ignorant = variances({}), knowing = variances(viewer), misled = variances(-viewer);
+  const auto exceeds = [](const RunningMoments& a, double factor, const RunningMoments& b) {
+    return (a.mean() - factor * b.mean()) / std::hypot(a.standard_error(), factor * b.standard_error());
+  };
+  CAPTURE(ignorant.mean(), knowing.mean(), misled.mean());
+  CHECK(exceeds(ignorant, 3, knowing) > 3);
+  CHECK(exceeds(misled, 1, knowing) > 3);
 }

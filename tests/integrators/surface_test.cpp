@@ -172,3 +172,55 @@ TEST_CASE("light's aim is asked on bodies only, and favours light that comes fro
     }
   });
 }
+
+TEST_CASE("which direction is followed where light's aim has a say is a matter of noise alone") {
+  // A ball under a sky, with a lamp beside it that both rays and light sampling find.
+  Scene scene;
+  add(scene, make_sphere(0.003, 64), medium_material(Rgb(0.8), Rgb(0.001)));
+  const double quarter = pi / 2;
+  const Mat3 facing_ball(Vec3(std::cos(quarter), 0, std::sin(quarter)), Vec3(0, 1, 0),
+                         Vec3(-std::sin(quarter), 0, std::cos(quarter)));
+  add(scene, placed(make_plane(0.006), Vec3(-0.006, 0, 0.003), facing_ball), emitter_material(Rgb(3)));
+  scene.environment = make_sky_environment({Rgb(0.2), Rgb(2), 4, glm::normalize(Vec3(0.8, 0.3, 0.5))});
+  prepare_scene(scene);
+
+  const Vec3 top(0, 0, 0.003), viewer = glm::normalize(Vec3(0.6, 0.3, 1));
+  SurfaceOptions options;
+  options.camera = parallel_camera(top, viewer, 0.1, 1e-7);
+  options.basis = Basis::shape;
+  options.specular = false;
+  const Measured image = measure(scene, options, 40000);
+
+  // The same with entries that know neither light nor viewer's aim, and directions by the cosine.
+  const BssrdfTransport transport(scene, 0, *scene.materials[0].medium, {1, 0}, "composite", Basis::shape);
+  Ray ray;
+  ray.origin = top + 0.1 * viewer;
+  ray.direction = -viewer;
+  const SurfacePoint exit = make_interaction(scene, ray, *scene.rays.nearest(ray, 0.5)).point;
+  const auto transmission = [](double cosine) { return 1 - fresnel_dielectric(cosine, 1.5); };
+  RunningMoments plain;
+  Sampler sampler(SamplerKind::independent, 7);
+  for (uint32_t k = 0; k < 40000; ++k) {
+    sampler.start(0, 0, k);
+    double value = 0;
+    if (const auto entry = transport.sample(exit, viewer, sampler, 0)) {
+      const Vec3 normal = entry->point.shading_normal;
+      Ray out;
+      out.direction = cosine_direction(normal, sampler.get_2d(Dimension::diffuse_direction));
+      if (glm::dot(out.direction, entry->point.geometric_normal) > 0) {
+        out.origin = entry->point.position + 1e-7 * entry->point.geometric_normal;
+        out.ignore_object = entry->point.object;
+        out.ignore_triangle = entry->point.triangle;
+        const auto hit = scene.rays.nearest(out, 0.5);
+        const Rgb radiance = hit ? scene.material(*hit).emission : scene.environment->radiance(out.direction);
+        value = (entry->weight * entry->aim.value_or(LightAim()).at(out.direction) * radiance).r * pi *
+                transmission(glm::dot(normal, out.direction));
+      }
+    }
+    plain.add(value * transmission(glm::dot(viewer, exit.shading_normal)));
+  }
+  const double z = (image.mean - plain.mean()) / std::hypot(image.error, plain.standard_error());
+  CAPTURE(image.mean, image.error, plain.mean(), plain.standard_error());
+  CHECK(two_sided_normal_p_value(z) > 0.01);
+  CHECK(image.error < 0.7 * plain.standard_error());
+}
