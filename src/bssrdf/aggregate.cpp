@@ -71,9 +71,10 @@ Rgb AggregateBssrdf::ellipse_mean(const BssrdfPoint& entry, const BssrdfPoint& e
 }
 
 Rgb AggregateBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const PairShape shape = pair(entry, exit);
+  PairShape shape = pair(entry, exit);
   const Rgb mean = ellipse_mean(entry, exit, shape.distance);
-  return mean * basis_over_albedo(mean, basis_pair(shape, entry, exit));
+  take_distance(shape, entry, exit);
+  return mean * basis_over_albedo(mean, shape);
 }
 
 Rgb AggregateBssrdf::typical_albedo(const BssrdfPoint& exit) const {

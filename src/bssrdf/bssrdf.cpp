@@ -13,14 +13,7 @@ namespace alabaster {
 
 Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium.profile) {
   assert(medium.profile != nullptr && medium.albedo != nullptr && medium.sigma_t.min() > 0);
-}
-
-PairShape Bssrdf::pair(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
-                       const PointShape& at_exit) const {
-  if (medium_.shape != nullptr) return pair_shape(entry, at_entry, exit, at_exit);
-  PairShape flat;
-  flat.distance = glm::distance(entry, exit);
-  return flat;
+  if (medium.shape != nullptr) shaped_.emplace(*medium.profile, *medium.shape->families, medium.sigma_t);
 }
 
 Rgb Bssrdf::aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
@@ -28,14 +21,11 @@ Rgb Bssrdf::aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
   return medium_.shape->families->aim(pair(entry, exit), 0.5 * (entry.albedo + exit.albedo), medium_.sigma_t);
 }
 
-Rgb Bssrdf::basis_over_albedo(const Rgb& albedo, const PairShape& pair) const {
+Rgb Bssrdf::half_space_over_albedo(const Rgb& albedo, double distance) const {
   const Rgb& sigma_t = medium_.sigma_t;
-  const Rgb half_space =
-      sigma_t.is_grey()
-          ? sigma_t.r * sigma_t.r * medium_.profile->evaluate_over_albedo(albedo, sigma_t.r * pair.distance)
-          : sigma_t * sigma_t * medium_.profile->evaluate_over_albedo(albedo, pair.distance * sigma_t);
-  if (medium_.shape == nullptr) return half_space;
-  return half_space * medium_.shape->families->factor(pair, albedo, sigma_t);
+  if (sigma_t.is_grey())
+    return sigma_t.r * sigma_t.r * medium_.profile->evaluate_over_albedo(albedo, sigma_t.r * distance);
+  return sigma_t * sigma_t * medium_.profile->evaluate_over_albedo(albedo, distance * sigma_t);
 }
 
 // Half of the draws follow the exit's albedo, half the largest anywhere: a dark exit amid bright surroundings

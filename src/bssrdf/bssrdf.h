@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "bssrdf/distance_table.h"
@@ -10,6 +11,7 @@
 #include "geometry/geodesic.h"
 #include "geometry/surface_point.h"
 #include "optics/profile_table.h"
+#include "optics/shaped_profile.h"
 #include "texture/albedo_field.h"
 
 namespace alabaster {
@@ -70,13 +72,20 @@ class Bssrdf {
 
   /// Distance and shape of a pair, for the basis.
   PairShape pair(const Vec3& entry, const PointShape& at_entry, const Vec3& exit,
-                 const PointShape& at_exit) const;
+                 const PointShape& at_exit) const {
+    if (medium_.shape != nullptr) return pair_shape(entry, at_entry, exit, at_exit);
+    PairShape flat;
+    flat.distance = glm::distance(entry, exit);
+    return flat;
+  }
   /// Slope of light's aim per channel, see ShapeFamilies::aim; 0 on the half-space basis. At the mean of the
   /// albedos at both ends.
   Rgb aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const;
   /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
   /// the shape.
-  Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const;
+  Rgb basis_over_albedo(const Rgb& albedo, const PairShape& pair) const {
+    return shaped_ ? shaped_->over_albedo(albedo, pair) : half_space_over_albedo(albedo, pair.distance);
+  }
 
   const BssrdfMedium& medium() const { return medium_; }
   const DistanceTable& distances() const { return distances_; }
@@ -85,17 +94,19 @@ class Bssrdf {
   PairShape pair(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
     return pair(entry.surface.position, entry.shape, exit.surface.position, exit.shape);
   }
-  /// The pair as the basis is to see it, its chord replaced by the medium's distance.
-  PairShape basis_pair(PairShape pair, const BssrdfPoint& entry, const BssrdfPoint& exit) const {
+  /// The pair as the basis is to see it: with the medium's distance for its chord.
+  void take_distance(PairShape& pair, const BssrdfPoint& entry, const BssrdfPoint& exit) const {
     if (medium_.distance != nullptr)
       pair.distance = medium_.distance->distance(entry.surface, exit.surface).value_or(pair.distance);
-    return pair;
   }
 
   BssrdfMedium medium_;
 
  private:
+  Rgb half_space_over_albedo(const Rgb& albedo, double distance) const;
+
   DistanceTable distances_;
+  std::optional<ShapedProfile> shaped_;
 };
 
 /// What the models may be told; each reads what concerns it.

@@ -28,11 +28,11 @@ CompositeBssrdf::CompositeBssrdf(const BssrdfMedium& medium, const KernelPlaceme
 
 Rgb CompositeBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
   if ((entry.albedo * exit.albedo).is_black()) return {};
-  const PairShape shape = pair(entry, exit);
+  PairShape shape = pair(entry, exit);
   const Rgb between =
       aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, shape.distance, taps_);
-  return local_factor(entry.albedo, exit.albedo, between) *
-         basis_over_albedo(between, basis_pair(shape, entry, exit));
+  take_distance(shape, entry, exit);
+  return local_factor(entry.albedo, exit.albedo, between) * basis_over_albedo(between, shape);
 }
 
 Rgb CompositeBssrdf::typical_albedo(const BssrdfPoint& exit) const {
@@ -51,9 +51,10 @@ OrderOneApartBssrdf::OrderOneApartBssrdf(const BssrdfMedium& medium, const Kerne
     : Bssrdf(medium), placement_(placement) {}
 
 Rgb OrderOneApartBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const PairShape chord = pair(entry, exit), shape = basis_pair(chord, entry, exit);
+  PairShape shape = pair(entry, exit);
   const Rgb between =
-      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, chord.distance, ek17_kernel);
+      aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, shape.distance, ek17_kernel);
+  take_distance(shape, entry, exit);
   const Rgb once = basis_over_albedo(Rgb(0), shape);
   const Rgb more = basis_over_albedo(between, shape) - once;
   return between * once + local_factor(entry.albedo, exit.albedo, between) * more;

@@ -5,7 +5,8 @@
 namespace alabaster {
 
 Rgb FactorizedBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  const PairShape shape = basis_pair(pair(entry, exit), entry, exit);
+  PairShape shape = pair(entry, exit);
+  take_distance(shape, entry, exit);
   const Rgb at_exit = exit.albedo * basis_over_albedo(exit.albedo, shape);
   if (entry.albedo == exit.albedo) return at_exit;
   const Rgb product = at_exit * entry.albedo * basis_over_albedo(entry.albedo, shape);

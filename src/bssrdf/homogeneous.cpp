@@ -3,7 +3,9 @@
 namespace alabaster {
 
 Rgb HomogeneousBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  return exit.albedo * basis_over_albedo(exit.albedo, basis_pair(pair(entry, exit), entry, exit));
+  PairShape shape = pair(entry, exit);
+  take_distance(shape, entry, exit);
+  return exit.albedo * basis_over_albedo(exit.albedo, shape);
 }
 
 }  // namespace alabaster

@@ -8,14 +8,17 @@
 #include <xmmintrin.h>
 #endif
 
-// Single-precision logarithm and exponential without branches or tables, for one number or four at once. Only
-// exactly rounded operations: the same result on every machine.
+// Single-precision logarithm and exponential without branches or tables, for one number, four or eight at
+// once. Only exactly rounded operations: the same result on every machine.
 
 namespace alabaster {
 
-/// Four lanes (vector extension of GCC and Clang; any CPU).
+/// Four lanes and eight (vector extension of GCC and Clang; any CPU).
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int32_t __attribute__((vector_size(16)));
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = int32_t __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
 
 inline int32_t to_integer(float x) {
   return static_cast<int32_t>(x);
@@ -23,11 +26,20 @@ inline int32_t to_integer(float x) {
 inline Int4 to_integer(Float4 x) {
   return __builtin_convertvector(x, Int4);
 }
+inline Int8 to_integer(Float8 x) {
+  return __builtin_convertvector(x, Int8);
+}
 inline float to_float(int32_t i) {
   return static_cast<float>(i);
 }
 inline Float4 to_float(Int4 i) {
   return __builtin_convertvector(i, Float4);
+}
+inline Float8 to_float(Int8 i) {
+  return __builtin_convertvector(i, Float8);
+}
+inline Float4 to_float(Double4 x) {
+  return __builtin_convertvector(x, Float4);
 }
 inline int32_t bits_of(float x) {
   return std::bit_cast<int32_t>(x);
@@ -35,11 +47,30 @@ inline int32_t bits_of(float x) {
 inline Int4 bits_of(Float4 x) {
   return reinterpret_cast<Int4>(x);
 }
+inline Int8 bits_of(Float8 x) {
+  return reinterpret_cast<Int8>(x);
+}
 inline float from_bits(int32_t i) {
   return std::bit_cast<float>(i);
 }
 inline Float4 from_bits(Int4 i) {
   return reinterpret_cast<Float4>(i);
+}
+inline Float8 from_bits(Int8 i) {
+  return reinterpret_cast<Float8>(i);
+}
+/// Eight lanes of twice four, and back.
+inline Float8 join(Float4 low, Float4 high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline Int8 join(Int4 low, Int4 high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline Float4 lower(Float8 x) {
+  return __builtin_shufflevector(x, x, 0, 1, 2, 3);
+}
+inline Float4 upper(Float8 x) {
+  return __builtin_shufflevector(x, x, 4, 5, 6, 7);
 }
 inline float square_root(float x) {
   return std::sqrt(x);
@@ -57,16 +88,32 @@ inline Float4 load4(const float* from) {
   std::memcpy(&result, from, sizeof result);
   return result;
 }
-/// Rows become columns.
-inline void transpose(Float4& a, Float4& b, Float4& c, Float4& d) {
-  const Float4 ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
-               ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-  const Float4 cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5),
-               cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
-  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
-  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
-  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+/// Two numbers from one place and two from another.
+inline Float4 load2(const float* low, const float* high) {
+#ifdef __SSE__
+  const auto pair = [](const float* from) { return reinterpret_cast<const __m64*>(from); };
+  return _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), pair(low)), pair(high));
+#else
+  return Float4{low[0], low[1], high[0], high[1]};
+#endif
+}
+/// Rows become columns: of three rows, four columns whose last lanes repeat the third row's.
+inline void columns(Float4 a, Float4 b, Float4 c, Float4 (&column)[4]) {
+  const Float4 low = __builtin_shufflevector(a, b, 0, 4, 1, 5),
+               high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  column[0] = __builtin_shufflevector(low, c, 0, 1, 4, 4);
+  column[1] = __builtin_shufflevector(low, c, 2, 3, 5, 5);
+  column[2] = __builtin_shufflevector(high, c, 0, 1, 6, 6);
+  column[3] = __builtin_shufflevector(high, c, 2, 3, 7, 7);
+}
+/// The same in both halves.
+inline void columns(Float8 a, Float8 b, Float8 c, Float8 (&column)[4]) {
+  const Float8 low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+               high = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  column[0] = __builtin_shufflevector(low, c, 0, 1, 8, 8, 4, 5, 12, 12);
+  column[1] = __builtin_shufflevector(low, c, 2, 3, 9, 9, 6, 7, 13, 13);
+  column[2] = __builtin_shufflevector(high, c, 0, 1, 10, 10, 4, 5, 14, 14);
+  column[3] = __builtin_shufflevector(high, c, 2, 3, 11, 11, 6, 7, 15, 15);
 }
 
 /// ln(x) for normal x > 0, error below 3e-7 (absolute or relative, whichever is larger): x = 2^e m, m in

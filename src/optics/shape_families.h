@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/rgb.h"
@@ -22,6 +23,15 @@ struct PairShape {
   double bend = 0;               // root mean square of the principal curvatures at both points
 };
 
+/// The mean free paths of three channels, in the unit of the pairs, read once per medium.
+struct FreePaths {
+  Float4 path, log2_path;  // the last lane is 1 and its logarithm
+  float longest;
+  bool is_grey;
+
+  explicit FreePaths(const Rgb& sigma_t);
+};
+
 /// Correction factors of curved and thin bodies over the half-space basis, by interpolation in a ShapeTable:
 /// linear in log size (after a spline has halved its steps), log distance and the position of the albedo.
 /// Exactly 1 where curvature and inverse thickness are below 1e-5 per mean free path, and on slabs thicker
@@ -36,7 +46,17 @@ class ShapeFamilies {
   double g() const { return g_; }
   double eta() const { return eta_; }
   /// S of the shape over S of the half-space, per channel. `sigma_t` in the inverse of the pair's unit.
-  Rgb factor(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
+  Rgb factor(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const {
+    return factor(pair, albedo, FreePaths(sigma_t));
+  }
+  Rgb factor(const PairShape& pair, const Rgb& albedo, const FreePaths& paths) const;
+  /// Whether factor() is the pair's reach in every channel, by curvature and thickness.
+  static bool is_flat(const PairShape& pair, const FreePaths& paths) {
+    return !(static_cast<float>(std::abs(pair.curvature)) * paths.longest > static_cast<float>(flat)) &&
+           !(static_cast<float>(pair.inverse_thickness) * paths.longest > static_cast<float>(flat));
+  }
+  /// For shape_lookup.h.
+  const float* table() const { return table_.data(); }
   /// Slope b of light's aim: S for light that arrives along -w and leaves along v is S (1 + b (w - v) . u), u
   /// the unit vector from exit to entry, w . u and v . u taken within the surface. The half-space's
   /// (bake_aim), setting in with curvature and thinness: 0 on a half-space, in full where they exceed 1/20
@@ -47,15 +67,9 @@ class ShapeFamilies {
   double factor(ShapeFamily family, double size, double distance, double albedo) const;
 
  private:
-  struct Rows;
-  Float4 log2_factor(ShapeFamily family, const Rows& rows_of, Float4 size, float node, int channels) const;
-  const std::vector<float>& table(ShapeFamily family) const {
-    return tables_[static_cast<std::size_t>(family)];
-  }
-
   double g_, eta_;
-  std::vector<float> aim_;                                          // by AimGrid
-  std::array<std::vector<float>, ShapeGrid::family_count> tables_;  // [size, flat first][node][row]
+  std::vector<float> aim_;    // by AimGrid
+  std::vector<float> table_;  // per family [size, flat first][node][row]
 };
 
 /// The table of the baseline, g = 0.3, eta = 1.5, compiled into the program.

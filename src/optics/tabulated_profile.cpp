@@ -12,13 +12,10 @@ namespace alabaster {
 
 namespace {
 
-constexpr int rows = AlbedoRows::count;
 constexpr int nodes = RadialBins::inner;
-constexpr int spline_rows = rows + 2;
 // The sampled density needs fewer rows.
-constexpr int sampled_stride = 4, sampled_rows = (rows - 1) / sampled_stride + 1;
-static_assert((rows - 1) % sampled_stride == 0);
-constexpr double first_log2 = RadialBins::first_octave + 0.5 / RadialBins::per_octave;
+constexpr int sampled_stride = 4, sampled_rows = (AlbedoRows::count - 1) / sampled_stride + 1;
+static_assert((AlbedoRows::count - 1) % sampled_stride == 0);
 constexpr double defensive_share = 1e-3;
 
 double node_radius(int node) {
@@ -33,19 +30,11 @@ std::size_t sampled_index(int node, int row) {
   return static_cast<std::size_t>(node) * sampled_rows + static_cast<std::size_t>(row);
 }
 
-// Position among the radial nodes, at least 0.
-template <typename Float>
-inline Float node_position(Float rho) {
-  const Float x = (fast_log2(rho) - static_cast<float>(first_log2)) * float{RadialBins::per_octave};
-  const Float zero = x - x;
-  return x > zero ? x : zero;
-}
-
-int node_below(double rho) {
-  return std::min(static_cast<int>(node_position(static_cast<float>(rho))), nodes - 2);
-}
-
 }  // namespace
+
+int TabulatedProfile::node_below(double rho) {
+  return std::min(static_cast<int>(node_position(fast_log2(static_cast<float>(rho)))), nodes - 2);
+}
 
 // Place between two rows of the sampled density.
 struct TabulatedProfile::Row {
@@ -132,30 +121,6 @@ double TabulatedProfile::albedo_from_reflectance(double reflectance) const {
   return AlbedoRows::albedo(high);
 }
 
-namespace {
-
-// Catmull-Rom over the rows, linear over the nodes; four (remainder, rho) at once.
-inline Float4 interpolate(const std::vector<float>& table, Float4 remainder, Float4 rho) {
-  const Float4 position = fast_row_position(remainder), distance = node_position(rho);
-  Int4 row = to_integer(position), node = to_integer(distance);
-  const Int4 last_row = row - row + (rows - 2), last_node = row - row + (nodes - 2);
-  row = row < last_row ? row : last_row;
-  node = node < last_node ? node : last_node;
-  const Float4 t = position - to_float(row), s = 1.f - t, along = distance - to_float(node);
-  const Int4 place = node * spline_rows + row;
-  Float4 taps[4];
-  for (int lane = 0; lane < 4; ++lane) {
-    const float* corner = &table[static_cast<std::size_t>(place[lane])];
-    const Float4 near = load4(corner), far = load4(corner + spline_rows);
-    taps[lane] = near + along[lane] * (far - near);
-  }
-  transpose(taps[0], taps[1], taps[2], taps[3]);
-  return s * t * (-0.5f * s * taps[0] - 0.5f * t * taps[3]) + (1.f + t * t * (1.5f * t - 2.5f)) * taps[1] +
-         (1.f + s * s * (1.5f * s - 2.5f)) * taps[2];
-}
-
-}  // namespace
-
 double TabulatedProfile::evaluate_over_albedo(double albedo, double rho) const {
   return evaluate_over_albedo(Rgb(albedo), Rgb(rho)).r;
 }
@@ -168,7 +133,7 @@ Rgb TabulatedProfile::evaluate_over_albedo(const Rgb& albedo, const Rgb& rho) co
   const auto remainder = [](double a) { return static_cast<float>(std::min(std::max(1 - a, 0.0), 1.0)); };
   const Float4 remainders{remainder(albedo.r), remainder(albedo.g), remainder(albedo.b), 0};
   const Float4 distances{static_cast<float>(rho.r), static_cast<float>(rho.g), static_cast<float>(rho.b), 1};
-  const Float4 density = fast_exp2(interpolate(log2_density_, remainders, distances));
+  const Float4 density = fast_exp2(log2_density(fast_row_position(remainders), fast_log2(distances)));
   const double scale = 1 / (2 * pi);
   return {scale * double{density[0]} / rho.r, scale * double{density[1]} / rho.g,
           scale * double{density[2]} / rho.b};
