@@ -51,7 +51,8 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
 std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit, const Vec3& viewer,
                                                        const Sampler& sampler, uint32_t occurrence) const {
   probe_->fetch(exit.triangle);
-  const BssrdfPoint from = model_->medium().point(exit);
+  BssrdfPoint from = model_->medium().point(exit);
+  from.towards_viewer = viewer;
   const auto entry = probe_->sample_entry(from, sampler, occurrence, viewer);
   if (!entry || entry->weight.is_black()) return std::nullopt;
   SubsurfaceEntry result{entry->point.surface, std::nullopt, std::nullopt, entry->weight * lobe_};

@@ -75,6 +75,12 @@ SurfacePoint PlanarModel::surface(Vec2 p) const {
   return point;
 }
 
+BssrdfPoint PlanarModel::exit(Vec2 p) const {
+  BssrdfPoint result = point(p);
+  if (!scene_.view.radiosity) result.towards_viewer = scene_.view.towards;
+  return result;
+}
+
 PlanarSampling planar_sampling_from_name(std::string_view name) {
   if (name == "uniform") return PlanarSampling::uniform;
   if (name == "profile") return PlanarSampling::profile;
@@ -247,7 +253,7 @@ Rgb PlanarIntegrator::radiance(const BssrdfPoint& exit, const Sampler& sampler) 
 }
 
 PixelSample PlanarIntegrator::sample(int x, int y, const Sampler& sampler) const {
-  const BssrdfPoint exit = model_.point(scene_.view.point(Vec2(x, y) + sampler.get_2d(Dimension::pixel)));
+  const BssrdfPoint exit = model_.exit(scene_.view.point(Vec2(x, y) + sampler.get_2d(Dimension::pixel)));
   PixelSample result;
   result.radiance = radiance(exit, sampler);
   result.alpha = 1;

@@ -42,6 +42,8 @@ class PlanarModel {
   /// The surface point at a place of the plane.
   SurfacePoint surface(Vec2 p) const;
   BssrdfPoint point(Vec2 p) const { return bssrdf_->medium().point(surface(p)); }
+  /// The same for light that leaves there, as the scene's view sees it.
+  BssrdfPoint exit(Vec2 p) const;
   const Bssrdf& bssrdf() const { return *bssrdf_; }
   const PlanarScene& scene() const { return scene_; }
 

@@ -57,11 +57,13 @@ std::unique_ptr<Bssrdf> make_bssrdf(std::string_view name, const BssrdfMedium& m
                                              options.ellipse_samples);
   if (name == "composite") return std::make_unique<CompositeBssrdf>(medium, placement());
   if (name == "composite:symmetric")
-    return std::make_unique<CompositeBssrdf>(medium, placement(), CompositeBssrdf::Kernel::symmetric);
+    return std::make_unique<CompositeBssrdf>(medium, placement(), CompositeBssrdf::Variant::symmetric);
+  if (name == "composite:view")
+    return std::make_unique<CompositeBssrdf>(medium, placement(), CompositeBssrdf::Variant::view);
   if (name == "composite:order1") return std::make_unique<OrderOneApartBssrdf>(medium, placement());
-  throw InputError(
-      "there is no model \"" + std::string(name) +
-      "\"; use homogeneous, factorized, aggregate, composite, composite:symmetric or composite:order1");
+  throw InputError("there is no model \"" + std::string(name) +
+                   "\"; use homogeneous, factorized, aggregate, composite, composite:symmetric, "
+                   "composite:order1 or composite:view");
 }
 
 }  // namespace alabaster

@@ -21,6 +21,8 @@ struct BssrdfPoint {
   SurfacePoint surface;
   Rgb albedo;
   PointShape shape{};  // filled for the shape basis only
+  /// Of an exit: unit, outside, towards who sees the light; 0: averaged over directions. For composite:view.
+  Vec3 towards_viewer{0};
 };
 
 /// What the shape basis reads: the families of its medium and the shape of the object's surface.
@@ -117,7 +119,8 @@ struct BssrdfOptions {
 };
 
 /// A model by name: homogeneous, factorized, aggregate, composite, or a variant: composite:symmetric
-/// (reciprocal kernel), composite:order1 (order 1 apart). Throws InputError for any other name.
+/// (reciprocal kernel), composite:order1 (order 1 apart), composite:view (alpha_e where the view's ray was
+/// last scattered). Throws InputError for any other name.
 std::unique_ptr<Bssrdf> make_bssrdf(std::string_view name, const BssrdfMedium& medium,
                                     const BssrdfOptions& options);
 

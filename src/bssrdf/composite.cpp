@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bssrdf/aggregation_kernel.h"
+#include "bssrdf/last_collision.h"
 #include "bssrdf/surroundings.h"
 
 namespace alabaster {
@@ -21,21 +22,24 @@ Rgb local_factor(const Rgb& entry, const Rgb& exit, const Rgb& between) {
 
 }  // namespace
 
-CompositeBssrdf::CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement, Kernel kernel)
-    : Bssrdf(medium), placement_(placement), taps_(ek17_kernel) {
-  if (kernel == Kernel::symmetric) taps_ = symmetric_ek17_kernel;
+CompositeBssrdf::CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement,
+                                 Variant variant)
+    : Bssrdf(medium), placement_(placement), variant_(variant), taps_(ek17_kernel) {
+  if (variant == Variant::symmetric) taps_ = symmetric_ek17_kernel;
 }
 
 Rgb CompositeBssrdf::evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  if ((entry.albedo * exit.albedo).is_black()) return {};
+  const Rgb last = variant_ == Variant::view ? last_collision_albedo(medium_, placement_, exit) : exit.albedo;
+  if ((entry.albedo * last).is_black()) return {};
   PairShape shape = pair(entry, exit);
   const Rgb between =
       aggregate_albedo(*medium_.albedo, placement_, entry.surface, exit.surface, shape.distance, taps_);
   take_distance(shape, entry, exit);
-  return local_factor(entry.albedo, exit.albedo, between) * basis_over_albedo(between, shape);
+  return local_factor(entry.albedo, last, between) * basis_over_albedo(between, shape);
 }
 
 Rgb CompositeBssrdf::typical_albedo(const BssrdfPoint& exit) const {
+  if (variant_ == Variant::view) return albedo_around(medium_, placement_, exit);
   if (exit.albedo.is_black()) return {};
   Rgb around = albedo_around(medium_, placement_, exit);
   for (int c = 0; c < 3; ++c)

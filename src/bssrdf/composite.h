@@ -11,14 +11,20 @@ namespace alabaster {
 /// or alpha_t is 0. One basis evaluation and three lookups per pair.
 class CompositeBssrdf final : public Bssrdf {
  public:
-  enum class Kernel { ek17, symmetric };  // symmetric: reciprocal, six lookups
-  CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement, Kernel kernel = Kernel::ek17);
+  enum class Variant {
+    eq2,
+    symmetric,  // kernel averaged with its mirror image: reciprocal, six lookups
+    view        // alpha_e is last_collision_albedo(): two lookups more
+  };
+  CompositeBssrdf(const BssrdfMedium& medium, const KernelPlacement& placement,
+                  Variant variant = Variant::eq2);
   Rgb evaluate(const BssrdfPoint& entry, const BssrdfPoint& exit) const override;
   Rgb typical_albedo(const BssrdfPoint& exit) const override;
   double typical_albedo_reach() const override;
 
  private:
   const KernelPlacement& placement_;
+  Variant variant_;
   std::span<const KernelTap> taps_;
 };
 

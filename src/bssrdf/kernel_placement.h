@@ -25,8 +25,9 @@ class KernelPlacement {
   /// Fills footprints[k] for taps[k]; the spans are equally long. `distance` is |x_e - x_i|, m, > 0.
   virtual void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
                      std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const = 0;
-  /// A Gaussian around one point; `sigma` in metres.
-  virtual KernelFootprint around(const SurfacePoint& point, double sigma) const = 0;
+  /// A Gaussian around one point, moved by `offset` in its tangent plane; `sigma` and `offset` in metres. One
+  /// that is moved is meant to be about as wide as that is long at least: charts and curvature are not asked.
+  virtual KernelFootprint around(const SurfacePoint& point, double sigma, const Vec3& offset) const = 0;
 };
 
 }  // namespace alabaster

@@ -32,7 +32,7 @@ Mat2 jacobian(const UvAtlas& atlas, uint32_t triangle) {
   return {along, uv / along, 0, std::sqrt(std::max(vv - uv * uv / uu, 0.0))};
 }
 
-/// The point a footprint lies on, on the mesh itself.
+/// A footprint on the mesh itself.
 KernelFootprint footprint_at(const PlacementBody& body, const SurfacePoint& point, double sigma) {
   const Mat2 uv_from_surface = body.atlas->empty() ? Mat2(0.0) : jacobian(*body.atlas, point.triangle);
   return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface, point.position};
@@ -58,6 +58,19 @@ Vec2 plane_barycentric(const TriangleMesh& mesh, uint32_t triangle, const Vec3& 
   return Vec2(cc * pb - bc * pc, bb * pc - bc * pb) / determinant;
 }
 
+/// The same, moved in the point's tangent plane.
+KernelFootprint footprint_beside(const PlacementBody& body, const SurfacePoint& point, double sigma,
+                                 const Vec3& offset) {
+  KernelFootprint f = footprint_at(body, point, sigma);
+  if (offset == Vec3(0)) return f;
+  f.position += offset;
+  if (sigma >= body.by_position_from) return f;
+  if (body.atlas->empty() || body.mesh->uv_sets.size() > 1)
+    f.barycentric = plane_barycentric(*body.mesh, point.triangle, f.position);
+  if (!body.atlas->empty()) f.uv += body.atlas->uv_from_surface(point.triangle, offset);
+  return f;
+}
+
 /// Taps at most this many deviations from the nearer end may lie in its tangent plane.
 constexpr double tangent_reach = 1.05;
 
@@ -78,8 +91,10 @@ void PlanarPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit,
   }
 }
 
-KernelFootprint PlanarPlacement::around(const SurfacePoint& point, double sigma) const {
-  return {point.uv, point.barycentric, point.triangle, sigma, uv_from_surface_};
+KernelFootprint PlanarPlacement::around(const SurfacePoint& point, double sigma, const Vec3& offset) const {
+  const Frame frame(point.geometric_normal);
+  const Vec2 within(glm::dot(offset, frame.tangent), glm::dot(offset, frame.bitangent));
+  return {point.uv + uv_from_surface_ * within, point.barycentric, point.triangle, sigma, uv_from_surface_};
 }
 
 /// How UV runs between two points of one chart: straight, and what the end slopes bend it by.
@@ -165,8 +180,8 @@ void ChordPlacement::place_in_uv(const Way& way, const UvPair& pair, const Kerne
   f.uv = trust == 1 ? cubic : tangent + trust * (cubic - tangent);
 }
 
-KernelFootprint ChordPlacement::around(const SurfacePoint& point, double sigma) const {
-  return footprint_at(body_, point, sigma);
+KernelFootprint ChordPlacement::around(const SurfacePoint& point, double sigma, const Vec3& offset) const {
+  return footprint_beside(body_, point, sigma, offset);
 }
 
 void ArcPlacement::place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
@@ -191,12 +206,14 @@ void ProjectedChordPlacement::place(const SurfacePoint& entry, const SurfacePoin
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const KernelTap& tap = taps[k];
     const Vec3 wanted = entry.position + tap.along * chord + tap.across * distance * side;
-    footprints[k] = around(on_surface(body_, wanted, tap.along > 0.5 ? exit : entry), tap.sigma * distance);
+    footprints[k] =
+        around(on_surface(body_, wanted, tap.along > 0.5 ? exit : entry), tap.sigma * distance, Vec3(0));
   }
 }
 
-KernelFootprint ProjectedChordPlacement::around(const SurfacePoint& point, double sigma) const {
-  return footprint_at(body_, point, sigma);
+KernelFootprint ProjectedChordPlacement::around(const SurfacePoint& point, double sigma,
+                                                const Vec3& offset) const {
+  return footprint_beside(body_, point, sigma, offset);
 }
 
 StraightestPlacement::StraightestPlacement(const PlacementBody& body)
@@ -214,12 +231,16 @@ void StraightestPlacement::place(const SurfacePoint& entry, const SurfacePoint& 
   if (!length || needs_sideways(taps)) return otherwise_.place(entry, exit, distance, taps, footprints);
   for (std::size_t k = 0; k < taps.size(); ++k) {
     const auto point = path_->between(entry, exit, taps[k].along);
-    footprints[k] = around(point ? *point : taps[k].along > 0.5 ? exit : entry, taps[k].sigma * *length);
+    footprints[k] = around(point                 ? *point
+                           : taps[k].along > 0.5 ? exit
+                                                 : entry,
+                           taps[k].sigma * *length, Vec3(0));
   }
 }
 
-KernelFootprint StraightestPlacement::around(const SurfacePoint& point, double sigma) const {
-  return footprint_at(body_, point, sigma);
+KernelFootprint StraightestPlacement::around(const SurfacePoint& point, double sigma,
+                                             const Vec3& offset) const {
+  return footprint_beside(body_, point, sigma, offset);
 }
 
 const std::vector<std::string>& placement_names() {

@@ -23,7 +23,7 @@ class PlanarPlacement final : public KernelPlacement {
   explicit PlanarPlacement(const Mat2& uv_from_surface) : uv_from_surface_(uv_from_surface) {}
   void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
              std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
-  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma, const Vec3& offset) const override;
 
  private:
   Mat2 uv_from_surface_;
@@ -54,7 +54,7 @@ class ChordPlacement : public KernelPlacement {
   explicit ChordPlacement(const PlacementBody& body) : body_(body) {}
   void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
              std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
-  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma, const Vec3& offset) const override;
 
   /// How much the cubic counts for a pair, 0 to 1.
   double trust(const SurfacePoint& entry, const SurfacePoint& exit) const;
@@ -94,7 +94,7 @@ class ProjectedChordPlacement final : public KernelPlacement {
   explicit ProjectedChordPlacement(const PlacementBody& body) : body_(body) {}
   void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
              std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
-  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma, const Vec3& offset) const override;
 
  private:
   PlacementBody body_;
@@ -108,7 +108,7 @@ class StraightestPlacement final : public KernelPlacement {
   ~StraightestPlacement() override;
   void place(const SurfacePoint& entry, const SurfacePoint& exit, double distance,
              std::span<const KernelTap> taps, std::span<KernelFootprint> footprints) const override;
-  KernelFootprint around(const SurfacePoint& point, double sigma) const override;
+  KernelFootprint around(const SurfacePoint& point, double sigma, const Vec3& offset) const override;
 
  private:
   PlacementBody body_;

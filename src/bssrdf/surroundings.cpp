@@ -17,7 +17,7 @@ double smooth_distance(const BssrdfMedium& medium) {
 }
 
 Rgb albedo_around(const BssrdfMedium& medium, const KernelPlacement& placement, const BssrdfPoint& exit) {
-  const Rgb mean = medium.albedo->filtered(placement.around(exit.surface, deviation(medium)));
+  const Rgb mean = medium.albedo->filtered(placement.around(exit.surface, deviation(medium), Vec3(0)));
   const Rgb floor = 0.01 * medium.albedo->max();
   return {std::max(mean.r, floor.r), std::max(mean.g, floor.g), std::max(mean.b, floor.b)};
 }

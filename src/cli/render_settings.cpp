@@ -86,7 +86,7 @@ void set_integrator(RenderSettings& s, const Value& v) {
 void set_model(RenderSettings& s, const Value& v) {
   const std::string base = v.text.substr(0, v.text.find(':'));  // a variant's name is checked by make_bssrdf
   if (base != "homogeneous" && base != "factorized" && base != "aggregate" && base != "composite")
-    v.refuse("is not known; use homogeneous, factorized, aggregate or composite");
+    v.refuse("is not known; use homogeneous, factorized, aggregate, composite or composite:view");
   s.model = v.text;
 }
 
@@ -156,7 +156,7 @@ const std::vector<Option>& options() {
   using S = RenderSettings;
   static const std::vector<Option> all{
       {{"integrator", "NAME", "surface (the default), volume (the reference) or walk", true}, set_integrator},
-      {{"model", "NAME", "homogeneous, factorized, aggregate or composite (the default)", true}, set_model},
+      {{"model", "NAME", "homogeneous, factorized, aggregate, composite or composite:view (the default)", true}, set_model},
       {{"basis", "NAME", "shape (the default) or half-space", true}, set_basis},
       {{"closest_point", "NAME", "of volume: cached (the default; same expectation) or exact", true}, set_closest_point},
       {{"placement", "NAME", "of composite's kernel: chord (the default), arc, projected-chord or straightest", true}, set_placement},

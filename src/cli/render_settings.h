@@ -26,7 +26,7 @@ const std::vector<RenderOptionInfo>& render_option_infos();
 
 /// Everything `render` can be told, checked.
 struct RenderSettings {
-  std::string integrator = "surface", model = "composite", basis = "shape", placement = "chord";
+  std::string integrator = "surface", model = "composite:view", basis = "shape", placement = "chord";
   SamplerKind sampler = SamplerKind::sobol;
   int width = 512, height = 512;
   std::optional<PixelRectangle> crop;

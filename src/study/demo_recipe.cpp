@@ -84,7 +84,8 @@ SceneRecipe make_shape_recipe(const std::string& name) {
   recipe.camera.direction = glm::normalize(-recipe.camera.position);
   recipe.title =
       name == "plane" ? "A plane of veined stone" : "A ball-shaped cavity in a cube of veined stone";
-  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "256x256"}, {"spp", "64"}};
+  recipe.options = {
+      {"integrator", "surface"}, {"model", "composite:view"}, {"size", "256x256"}, {"spp", "64"}};
   return recipe;
 }
 
@@ -111,7 +112,8 @@ SceneRecipe make_demo_recipe() {
   recipe.sky.key = Rgb(1.1, 1.05, 1.0);
   recipe.sky.exponent = 2;
   recipe.sky.direction = {0.8, 0.6, 0.45};
-  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "720x480"}, {"spp", "192"}};
+  recipe.options = {
+      {"integrator", "surface"}, {"model", "composite:view"}, {"size", "720x480"}, {"spp", "192"}};
   return recipe;
 }
 

@@ -88,13 +88,13 @@ MeshMethod parse_mesh_method(const std::string& name) {
   }
   const bool composite = parts[0] == "composite", placed = composite || parts[0] == "aggregate";
   std::string variant, placement, distance;
-  if (next < parts.size() && composite && contains({"symmetric", "order1"}, parts[next]))
+  if (next < parts.size() && composite && contains({"symmetric", "order1", "view"}, parts[next]))
     variant = parts[next++];
   if (next < parts.size() && placed && contains(placement_names(), parts[next])) placement = parts[next++];
   if (next < parts.size() && contains(distance_names(), parts[next])) distance = parts[next++];
   if (next < parts.size())
     throw InputError("method '" + name +
-                     "': there is no such variant; composite takes symmetric and order1, " +
+                     "': there is no such variant; composite takes symmetric, order1 and view, " +
                      "composite and aggregate a placement: " + joined(placement_names()) +
                      "; every model a distance: " + joined(distance_names()));
   if (placement == default_placement) placement.clear();
@@ -106,7 +106,7 @@ std::vector<MeshMethod> standard_mesh_methods() {
   std::vector<MeshMethod> methods;
   for (const std::string& basis : mesh_bases())
     for (const std::string& model : models()) methods.push_back(bssrdf_method(model, basis, ""));
-  methods.push_back(parse_mesh_method("walk"));
+  for (const char* name : {"composite+shape+view", "walk"}) methods.push_back(parse_mesh_method(name));
   return methods;
 }
 

@@ -10,7 +10,7 @@
 namespace alabaster {
 
 /// A way to render meshes, as charts and results.json name it: MODEL+BASIS[+VARIANT][+PLACEMENT]
-/// [+DISTANCE] (composite+half-space, composite+half-space+symmetric, composite+shape+straightest,
+/// [+DISTANCE] (composite+half-space, composite+half-space+symmetric, composite+shape+view+straightest,
 /// homogeneous+shape+geodesic), `walk` (random walks with the exit's albedo) or `volume`. Neither the default
 /// placement nor the chord is named.
 struct MeshMethod {
@@ -30,7 +30,7 @@ const std::vector<std::string>& mesh_bases();
 
 /// Parses a name; MODEL[:VARIANT] alone stands on the default basis. Throws InputError.
 MeshMethod parse_mesh_method(const std::string& name);
-/// Every model on every basis, then the walk.
+/// Every model on every basis, composite+shape+view, then the walk.
 std::vector<MeshMethod> standard_mesh_methods();
 
 /// The method's image at `spp` Sobol samples per pixel.

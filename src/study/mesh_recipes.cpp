@@ -104,7 +104,8 @@ SceneRecipe recipe_of(StudyShape shape) {
   recipe.parts.push_back(std::move(part));
   recipe.camera = framing(box, shape.view);
   if (shape.back_lit) recipe.sky.direction = {-0.5, -0.75, -0.3};
-  recipe.options = {{"integrator", "surface"}, {"model", "composite"}, {"size", "256x256"}, {"spp", "64"}};
+  recipe.options = {
+      {"integrator", "surface"}, {"model", "composite:view"}, {"size", "256x256"}, {"spp", "64"}};
   return recipe;
 }
 

@@ -18,7 +18,7 @@ double evaluations_per_second(const PlanarModel& model, double seconds) {
   for (int i = 0; i < pairs_in_a_round; ++i) {
     const PlanarView& view = model.scene().view;
     const Vec2 exit = view.centre + view.size * (Vec2(rng.uniform(), rng.uniform()) - 0.5);
-    pairs.emplace_back(model.point(exit), model.scene().light.sample({rng.uniform(), rng.uniform()}));
+    pairs.emplace_back(model.exit(exit), model.scene().light.sample({rng.uniform(), rng.uniform()}));
   }
   double sum = 0;
   int rounds = 0;

@@ -37,7 +37,7 @@ bool apply_variant(PlanarMethod& method, const std::string& variant) {
     method.sampling = planar_sampling_from_name(variant);
     return true;
   }
-  if (method.model == "composite" && (variant == "symmetric" || variant == "order1")) {
+  if (method.model == "composite" && (variant == "symmetric" || variant == "order1" || variant == "view")) {
     method.model += ":" + variant;
     return true;
   }
@@ -62,7 +62,7 @@ PlanarMethod parse_planar_method(const std::string& name) {
     if (!apply_variant(method, parts[i]))
       throw InputError(
           "model '" + name + "': there is no variant '" + parts[i] +
-          "'; composite takes symmetric and order1, aggregate its ellipse's width (0.5) and mc64, "
+          "'; composite takes symmetric, order1 and view, aggregate its ellipse's width (0.5) and mc64, "
           "all take uniform, profile, mis and clipped");
   return method;
 }

@@ -11,9 +11,9 @@
 namespace alabaster {
 
 /// A model with everything that decides its image of a flat scene, as charts and results.json name it:
-/// MODEL[:VARIANT...], the variants composite:symmetric, composite:order1; aggregate:WIDTH and
-/// aggregate:WIDTH:mcSAMPLES (the ellipse's width, Monte Carlo as in the paper instead of pyramid lookups);
-/// and :uniform, :profile, :mis for other than the default sampling.
+/// MODEL[:VARIANT...], the variants composite:symmetric, composite:order1, composite:view; aggregate:WIDTH
+/// and aggregate:WIDTH:mcSAMPLES (the ellipse's width, Monte Carlo as in the paper instead of pyramid
+/// lookups); and :uniform, :profile, :mis for other than the default sampling.
 struct PlanarMethod {
   std::string name;   // as given
   std::string model;  // for make_bssrdf()

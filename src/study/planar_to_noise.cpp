@@ -33,7 +33,7 @@ class RadialPilot {
         const double r = reach_ * (static_cast<double>(ring) + u.x) / rings_per_radius;
         // A golden section apart: the angles of a ring are spread evenly.
         const double angle = 2 * pi * (i * 0.6180339887498949 + u.y / samples);
-        const BssrdfPoint exit = model.point(centre_ + r * Vec2(std::cos(angle), std::sin(angle)));
+        const BssrdfPoint exit = model.exit(centre_ + r * Vec2(std::cos(angle), std::sin(angle)));
         const Rgb value = integrator.radiance(exit, sampler);
         squares += (value * value).mean();
       }

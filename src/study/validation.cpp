@@ -118,8 +118,9 @@ KernelMap measure_kernel(const PlanarScene& scene, Vec2 exit, const std::vector<
 
 namespace {
 
-const std::vector<std::string> standard_models{"homogeneous", "factorized",          "aggregate",
-                                               "composite",   "composite:symmetric", "composite:order1"};
+const std::vector<std::string> standard_models{"homogeneous",   "factorized",          "aggregate",
+                                               "composite",     "composite:symmetric", "composite:order1",
+                                               "composite:view"};
 const std::vector<std::string> rival_models{"homogeneous", "factorized", "aggregate", "composite"};
 
 std::vector<PlanarMethod> parse_all(const std::vector<std::string>& names) {

@@ -195,12 +195,12 @@ TEST_CASE("what a Gaussian sees across a gap is the far layer's share of it in s
   const double from =
       field->by_position_from();  // narrower ones are the texture's, which knows its own layer
   REQUIRE(from < 0.08);
-  CHECK(field->filtered(body.placement.around(inside, 0.7 * from)).r == Approx(0.9).margin(1e-5));
+  CHECK(field->filtered(body.placement.around(inside, 0.7 * from, Vec3(0))).r == Approx(0.9).margin(1e-5));
   for (const double sigma : {from, 0.08, 0.1, 0.2}) {
     const auto plane = [&](double d) { return std::exp(-0.5 * d * d / (sigma * sigma)); };
     const double own = 1 + plane(0.2), far = plane(0.1) + plane(0.3);
     CAPTURE(sigma, far / (own + far));
-    CHECK(field->filtered(body.placement.around(inside, sigma)).r ==
+    CHECK(field->filtered(body.placement.around(inside, sigma, Vec3(0))).r ==
           Approx((0.9 * own + 0.3 * far) / (own + far)).margin(0.02));
   }
 }
@@ -236,7 +236,7 @@ TEST_CASE("mirrored and tiled textures average to what the surface shows", "[bss
           exact += w * value(c.uv(p.position + Vec3(sigma * offset, 0, 0)).x), weight += w;
         }
         const double error =
-            std::abs(field->filtered(body.placement.around(p, sigma)).r - exact / weight) / 0.8;
+            std::abs(field->filtered(body.placement.around(p, sigma, Vec3(0))).r - exact / weight) / 0.8;
         worst = std::max(worst, error), squared += error * error / count;
       }
       CAPTURE(c.name, sigma);

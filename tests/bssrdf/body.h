@@ -58,5 +58,6 @@ inline alabaster::EntryRandom entry_random(alabaster::Rng& rng) {
   return {{rng.uniform(), rng.uniform()}, {rng.uniform(), rng.uniform()}, rng.uniform()};
 }
 
-inline constexpr const char* all_models[] = {"homogeneous", "factorized",          "aggregate",
-                                             "composite",   "composite:symmetric", "composite:order1"};
+inline constexpr const char* all_models[] = {"homogeneous",   "factorized",          "aggregate",
+                                             "composite",     "composite:symmetric", "composite:order1",
+                                             "composite:view"};

@@ -228,7 +228,8 @@ TEST_CASE("sampling is never aimed below a hundredth of the brightest albedo", "
   const AnalyticProfile profile;
   const Spot albedo;
   const BssrdfMedium medium{&profile, Rgb(1), &albedo};
-  for (const char* name : {"composite", "composite:symmetric", "composite:order1", "aggregate"})
+  for (const char* name :
+       {"composite", "composite:symmetric", "composite:order1", "composite:view", "aggregate"})
     CHECK(model_on(name, medium, unit_plane)->typical_albedo(medium.point(on_plane(0, 0))).g ==
           Approx(0.009));
 }
@@ -265,6 +266,7 @@ TEST_CASE("the composite costs one basis evaluation and three lookups", "[bssrdf
   CHECK(cost("factorized") == std::pair(2, 0));
   CHECK(cost("composite") == std::pair(1, 3));  // three channels in one
   CHECK(cost("composite:symmetric") == std::pair(1, 6));
+  CHECK(cost("composite:view") == std::pair(1, 5));
   CHECK(cost("aggregate") == std::pair(1, 5));
 }
 

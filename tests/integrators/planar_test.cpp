@@ -13,8 +13,9 @@ using namespace alabaster;
 
 namespace {
 
-const std::vector<std::string> all_models{"homogeneous", "factorized",          "aggregate",
-                                          "composite",   "composite:symmetric", "composite:order1"};
+const std::vector<std::string> all_models{"homogeneous",   "factorized",          "aggregate",
+                                          "composite",     "composite:symmetric", "composite:order1",
+                                          "composite:view"};
 
 Image image_of(const PlanarScene& scene, const std::string& model, PlanarSampling sampling, uint32_t spp,
                uint64_t seed = 1, SamplerKind sampler = SamplerKind::sobol) {

@@ -44,7 +44,8 @@ TEST_CASE("for the same pairs, a quad in space has the plane's S_V") {
   BssrdfOptions options;
   options.placement = &placement;
   const double area = quad.place.scale * quad.place.scale;
-  for (const char* name : {"homogeneous", "factorized", "aggregate", "composite", "composite:symmetric"}) {
+  for (const char* name :
+       {"homogeneous", "factorized", "aggregate", "composite", "composite:symmetric", "composite:view"}) {
     const BssrdfMedium medium{&baseline_profile(), Rgb(1 / quad.place.scale), object.albedo.get()};
     const auto on_mesh = make_bssrdf(name, medium, options);
     const PlanarModel on_plane(quad.planar, name, baseline_profile());
@@ -52,8 +53,10 @@ TEST_CASE("for the same pairs, a quad in space has the plane's S_V") {
     for (int i = 0; i < 300; ++i) {
       const Vec2 a(8 * rng.uniform() - 4, 8 * rng.uniform() - 4),
           b(8 * rng.uniform() - 4, 8 * rng.uniform() - 4);
-      const BssrdfPoint mesh_a = medium.point(quad.surface(a)), mesh_b = medium.point(quad.surface(b));
-      const BssrdfPoint plane_a = on_plane.point(a), plane_b = on_plane.point(b);
+      const BssrdfPoint mesh_a = medium.point(quad.surface(a)), plane_a = on_plane.point(a);
+      BssrdfPoint mesh_b = medium.point(quad.surface(b)), plane_b = on_plane.point(b);
+      plane_b.towards_viewer = glm::normalize(Vec3(rng.uniform() - 0.5, rng.uniform() - 0.5, 0.3));
+      mesh_b.towards_viewer = quad.place.rotation * plane_b.towards_viewer;
       const Rgb mesh = area * on_mesh->evaluate(mesh_a, mesh_b);
       const Rgb plane = on_plane.bssrdf().evaluate(plane_a, plane_b);
       INFO(name << " from (" << a.x << ", " << a.y << ") to (" << b.x << ", " << b.y << ")");

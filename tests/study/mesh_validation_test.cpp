@@ -31,6 +31,7 @@ Image flat_image(int size, double value, double variance) {
 TEST_CASE("names of mesh methods are read and written back") {
   CHECK(parse_mesh_method("composite").name == "composite+half-space");
   CHECK(parse_mesh_method("composite:symmetric").name == "composite+half-space+symmetric");
+  CHECK(parse_mesh_method("composite+shape+view").model == "composite:view");
   const MeshMethod method = parse_mesh_method("composite+half-space+order1");
   CHECK(method.model == "composite:order1");
   CHECK(method.basis == "half-space");
@@ -48,7 +49,7 @@ TEST_CASE("names of mesh methods are read and written back") {
         "factorized+half-space+arc", "walk+geodesic", "composite+half-space+order1+order1"})
     CHECK_THROWS_AS(parse_mesh_method(wrong), InputError);
   for (const MeshMethod& m : standard_mesh_methods()) CHECK(parse_mesh_method(m.name).name == m.name);
-  CHECK(standard_mesh_methods().size() == 4 * mesh_bases().size() + 1);
+  CHECK(standard_mesh_methods().size() == 4 * mesh_bases().size() + 2);
 }
 
 TEST_CASE("meshes are told from flat scenes by their names") {

@@ -25,7 +25,7 @@ ValidationBudget small_budget() {
 std::map<std::string, Metrics> errors_on(const std::string& name) {
   const PlanarScene scene = planar_scenes({name}, small_budget().resolution).front();
   std::vector<PlanarMethod> methods;
-  for (const char* model : {"homogeneous", "factorized", "composite"})
+  for (const char* model : {"homogeneous", "factorized", "composite", "composite:view"})
     methods.push_back(parse_planar_method(model));
   const SceneResult result = measure_scene(scene, methods, baseline_profile(), small_budget(), true, 1);
   std::map<std::string, Metrics> errors;
@@ -93,6 +93,18 @@ TEST_CASE("obliquely, too, the best aggregate passes the composite model", "[slo
     CHECK(clearly_below(errors["composite"], errors["factorized"]));
     CHECK(clearly_below(errors["factorized"], errors["homogeneous"]));
   }
+}
+
+TEST_CASE("read where the view's ray was last scattered, alpha_e is right at a slant as well", "[slow]") {
+  for (const char* name : {"stripes1@45", "stripes1@75", "dots@45", "logo@45"}) {
+    auto errors = errors_on(name);
+    INFO(name << ": composite " << *errors["composite"].bias << ", with the view "
+              << *errors["composite:view"].bias << ", best aggregate " << *errors["aggregate"].bias);
+    CHECK(clearly_below(errors["composite:view"], errors["composite"]));
+    CHECK(clearly_below(errors["composite:view"], errors["aggregate"]));
+  }
+  auto averaged = errors_on("stripes1@radiosity");
+  CHECK(clearly_below(averaged["composite:view"], averaged["composite"]));
 }
 
 TEST_CASE("the factorized model overestimates", "[slow]") {
