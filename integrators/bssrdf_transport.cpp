@@ -1,6 +1,5 @@
 #include "integrators/bssrdf_transport.h"
 
-#include "geometry/tangent.h"
 #include "optics/fresnel.h"
 #include "optics/profile_store.h"
 #include "texture/material_map.h"
@@ -56,11 +55,10 @@ std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit,
   const auto entry = probe_->sample_entry(from, sampler, occurrence, viewer);
   if (!entry || entry->weight.is_black()) return std::nullopt;
   SubsurfaceEntry result{entry->point.surface, std::nullopt, std::nullopt, entry->weight * lobe_};
-  const Rgb slope = model_->aim(entry->point, from);
-  if (slope.is_black()) return result;
-  const Vec3 chord = glm::normalize(result.point.position - exit.position);
-  const double away = glm::dot(viewer, within_surface(chord, exit.shading_normal));
-  result.aim = LightAim{Rgb(1) - away * slope, slope, within_surface(chord, result.point.shading_normal)};
+  const Rgb concentration = model_->aim(entry->point, from);
+  if (!concentration.is_black())
+    result.aim = LightAim(concentration, result.point.position, result.point.shading_normal, exit.position,
+                          exit.shading_normal, viewer);
   return result;
 }
 

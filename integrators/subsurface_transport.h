@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,21 +7,9 @@
 #include "core/rgb.h"
 #include "core/sampler.h"
 #include "geometry/surface_point.h"
+#include "optics/light_aim.h"
 
 namespace alabaster {
-
-/// How much of the light that enters at a point, by its direction, matters there: a factor with mean about 1
-/// over the hemisphere.
-struct LightAim {
-  Rgb offset{1}, slope{0};
-  Vec3 along{0};
-
-  /// `direction` points to where the light comes from.
-  Rgb at(const Vec3& direction) const {
-    const Rgb factor = offset + glm::dot(along, direction) * slope;
-    return {std::max(0.0, factor.r), std::max(0.0, factor.g), std::max(0.0, factor.b)};
-  }
-};
 
 /// Where light that leaves a medium came in.
 struct SubsurfaceEntry {

@@ -412,10 +412,10 @@ Rgb SurfaceIntegrator::entering(const SurfacePoint& point, const Vec3& mirror_no
                                 const Interface& interface, double weight, const Arrival& arrival, Path& path,
                                 const LightAim& aim) const {
   const uint32_t vertex = path.vertices++;
-  Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position) * aim.at(Vec3(0));
+  Rgb sum = pi * interface.diffuse_transmittance * lights_.uniform_radiance(point.position) * aim.mean();
   if (near_lights_.has_lights())
     sum += entering_from_light(point, mirror_normal, interface, vertex, path, aim);
-  const bool aimed = scene_.environment && !aim.slope.is_black();
+  const bool aimed = scene_.environment && !aim.is_even();
   const Look seen = aimed ? look_aimed(point, mirror_normal, interface, aim, vertex, path)
                           : look(point, mirror_normal, interface,
                                  path.sampler.get_2d(Dimension::diffuse_direction, vertex));

@@ -80,8 +80,8 @@ class Bssrdf {
     flat.distance = glm::distance(entry, exit);
     return flat;
   }
-  /// Slope of light's aim per channel, see ShapeFamilies::aim; 0 on the half-space basis. At the mean of the
-  /// albedos at both ends.
+  /// Concentration of light's aim per channel, see ShapeFamilies::aim; 0 on the half-space basis. At the mean
+  /// of the albedos at both ends.
   Rgb aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const;
   /// S(alpha, d) / alpha in scene units, 1/m^2: sigma_t^2 R(sigma_t d; alpha) / alpha, times the factor of
   /// the shape.

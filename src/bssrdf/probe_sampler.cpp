@@ -41,9 +41,9 @@ constexpr double full_worth = 1;
 /// the one around.
 constexpr double rough = 0.05;
 constexpr double contrasting = 0.2;
-/// So they are where the slope of light's aim exceeds this; no entry counts as worth less for its aim than
-/// the second figure.
-constexpr double aimed_slope = 0.1;
+/// So they are where the concentration of light's aim exceeds this; no entry counts as worth less for its aim
+/// than the second figure.
+constexpr double aimed_from = 0.1;
 constexpr double least_aim = 0.25;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
@@ -196,7 +196,7 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
     near.distance = 1 / model_.medium().sigma_t.mean();
     near.bend = std::sqrt(point.shape.bend_square);
     near.inverse_thickness = point.shape.inverse_thickness;
-    exit.aimed = mean_aim(exit, near) > aimed_slope;
+    exit.aimed = mean_aim(exit, near) > aimed_from;
     exit.viewer = within_surface(*viewer, point.surface.shading_normal);
   }
   exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optics/light_aim.h"
 #include "optics/row_position.h"
 #include "optics/shape_lookup.h"
 
@@ -32,7 +33,9 @@ FreePaths::FreePaths(const Rgb& sigma_t)
       is_grey(sigma_t.is_grey()) {}
 
 ShapeFamilies::ShapeFamilies(const ShapeTable& table) : g_(table.g), eta_(table.eta) {
-  for (const int16_t slope : table.aim) aim_.push_back(static_cast<float>(ShapeTable::step * slope));
+  const AimSlopes slopes(eta_);
+  for (const int16_t slope : table.aim)
+    aim_.push_back(static_cast<float>(slopes.concentration(ShapeTable::step * slope)));
   table_.reserve(static_cast<std::size_t>(origin(ShapeGrid::family_count)));
   for (int f = 0; f < ShapeGrid::family_count; ++f) {
     const auto family = static_cast<ShapeFamily>(f);

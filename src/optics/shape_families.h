@@ -57,10 +57,8 @@ class ShapeFamilies {
   }
   /// For shape_lookup.h.
   const float* table() const { return table_.data(); }
-  /// Slope b of light's aim: S for light that arrives along -w and leaves along v is S (1 + b (w - v) . u), u
-  /// the unit vector from exit to entry, w . u and v . u taken within the surface. The half-space's
-  /// (bake_aim), setting in with curvature and thinness: 0 on a half-space, in full where they exceed 1/20
-  /// per mean free path.
+  /// Concentration of light's aim (LightAim), of the half-space's slopes (bake_aim), setting in with
+  /// curvature and thinness: 0 on a half-space, in full where they exceed 1/20 per mean free path.
   Rgb aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
   /// factor() in one channel for one family: `size` a radius or thickness and `distance` a chord (balls,
   /// cavities) or lateral distance (slabs), mean free paths.

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "body_transfer.h"
+#include "optics/light_aim.h"
 #include "optics/path_tally.h"
 
 namespace alabaster {
@@ -45,12 +46,6 @@ struct Lobe {
 /// Irradiance that enters over pi c, by the cosine between normal and key.
 struct Entering {
   std::vector<double> value;
-  std::vector<double> aside;  // the same of w's part towards the key within the tangent plane
-  double aside_at(double cosine) const {
-    const double x = std::clamp(32 * (cosine + 1), 0.0, 63.999);
-    const auto i = static_cast<std::size_t>(x);
-    return aside[i] + (x - static_cast<double>(i)) * (aside[i + 1] - aside[i]);
-  }
   double at(double cosine) const {
     const double x = std::clamp(32 * (cosine + 1), 0.0, 63.999);
     const auto i = static_cast<std::size_t>(x);
@@ -61,20 +56,16 @@ struct Entering {
       const double along = k / 32.0 - 1, across = std::sqrt(std::max(0.0, 1 - along * along));
       Sky turned = sky;
       turned.direction = Vec3(across, 0, along);
-      double sum = 0, across_sum = 0, norm = 0;
+      double sum = 0, norm = 0;
       for (int i = 0; i < 64; ++i)
         for (int j = 0; j < 64; ++j) {
           const double mu = std::sqrt((i + 0.5) / 64), phi = 2 * pi * (j + 0.5) / 64;
           const double s = std::sqrt(1 - mu * mu);
           const double weight = 1 - fresnel_dielectric(mu, 1.5);
           norm += weight;
-          const double light =
-              weight * lobe.at(mu) * turned.radiance(Vec3(s * std::cos(phi), s * std::sin(phi), mu));
-          sum += light;
-          across_sum += light * s * std::cos(phi);
+          sum += weight * lobe.at(mu) * turned.radiance(Vec3(s * std::cos(phi), s * std::sin(phi), mu));
         }
       value.push_back(sum / norm);
-      aside.push_back(across_sum / norm);
     }
   }
 };
@@ -88,19 +79,33 @@ inline Vec3 refracted_outwards(const Vec3& inside, const Vec3& n, double eta) {
   return glm::normalize(along + std::sqrt(std::max(0.0, 1 - glm::dot(along, along))) * n);
 }
 
-/// (1 + b (w - v) . u) S of ShapeFamilies::aim over S, with E at the entry: irradiance that enters under the
-/// sky, over pi c.
-inline double aimed_irradiance(double slope, const Entering& entering, const BodyView& view, bool lit_by_sky,
-                               const Vec3& entry, const Vec3& entry_normal, const Vec3& exit,
-                               const Vec3& exit_normal) {
-  const Vec3 u = glm::normalize(entry - exit);
-  const double away = glm::dot(view.camera, u - glm::dot(u, exit_normal) * exit_normal);
-  if (!lit_by_sky) return std::max(0.0, 1 - slope * away);
-  const double cosine = glm::dot(entry_normal, view.key);
-  const Vec3 aside = view.key - cosine * entry_normal;
-  const double towards = entering.aside_at(cosine) * glm::dot(aside, u) / std::max(1e-9, glm::length(aside));
-  return std::max(0.0, entering.at(cosine) * (1 - slope * away) + slope * towards);
-}
+/// Directions spread evenly over the sphere, for light of a sky that is aimed.
+class SkyDirections {
+ public:
+  explicit SkyDirections(const Sky& sky) {
+    constexpr int count = 400;
+    for (int k = 0; k < count; ++k) {
+      const double z = 1 - 2 * (k + 0.5) / count, s = std::sqrt(1 - z * z), azimuth = 2.399963229728653 * k;
+      const Vec3 w(s * std::cos(azimuth), s * std::sin(azimuth), z);
+      directions_.push_back({w, sky.radiance(w)});
+    }
+  }
+  /// The mean of the aim over the irradiance that enters, of the sky's light or of uniform light.
+  double mean(const LightAim& aim, bool lit_by_sky, const Vec3& normal) const {
+    double sum = 0, norm = 0;
+    for (const auto& [w, radiance] : directions_) {
+      const double cosine = glm::dot(w, normal);
+      if (cosine <= 0) continue;
+      const double light = cosine * (1 - fresnel_dielectric(cosine, 1.5)) * (lit_by_sky ? radiance : 1);
+      sum += light * aim.at(w).r;
+      norm += light;
+    }
+    return sum / norm;
+  }
+
+ private:
+  std::vector<std::pair<Vec3, double>> directions_;
+};
 
 /// Walks back from the exit, along the camera's ray or as from uniform radiance; score(order, normal and
 /// direction outside where light came in).

@@ -11,7 +11,7 @@
 #include "core/rng.h"
 #include "core/statistics.h"
 #include "geometry/shapes.h"
-#include "geometry/tangent.h"
+#include "optics/light_aim.h"
 #include "support/analytic_albedo.h"
 #include "support/analytic_profile.h"
 #include "support/mesh_integral.h"
@@ -173,12 +173,10 @@ TEST_CASE("a choice of entries that knows viewer and light takes most of the noi
   const auto top = body.rays.closest_point(0, Vec3(0, 0, 5));
   const BssrdfPoint exit = model->medium().point(body.mesh.surface_point(top->triangle, top->barycentric));
   const auto worth = [&](const EntrySample& entry) {
-    const Vec3 u = glm::normalize(entry.point.surface.position - exit.surface.position);
     const Vec3 n = entry.point.surface.shading_normal;
-    const double aimed = glm::dot(towards_light, within_surface(u, n)) -
-                         glm::dot(viewer, within_surface(u, exit.surface.shading_normal));
-    return entry.weight.mean() * std::max(0.0, glm::dot(n, towards_light)) *
-           std::max(0.0, 1 + model->aim(entry.point, exit).mean() * aimed);
+    const LightAim aim(model->aim(entry.point, exit), entry.point.surface.position, n, exit.surface.position,
+                       exit.surface.shading_normal, viewer);
+    return entry.weight.mean() * std::max(0.0, glm::dot(n, towards_light)) * aim.at(towards_light).mean();
   };
   Rng rng(29);
   const auto variances = [&](const std::optional<Vec3>& seen_from) {

@@ -135,6 +135,7 @@ TEST_CASE("images under one-sided light: within 4 % of walks by light's aim, 10 
     const BodyView view = make_view(body, camera, key, 30);
     const Sky sky{0.15, 3, view.key};
     const Entering entering(sky, Lobe());
+    const SkyDirections directions(sky);
     double walked = 0, variance = 0, mean = 0, aimed = 0;
     for (std::size_t i = 0; i < view.exits.size(); ++i) {
       const Vec3 xe = view.exits[i], n = body.normal(xe);
@@ -153,10 +154,11 @@ TEST_CASE("images under one-sided light: within 4 % of walks by light's aim, 10 
         const PairShape pair = pair_shape(cell.position, cell.shape, xe, at_exit);
         const double s = cell.area * baseline_profile().evaluate(albedo, pair.distance) *
                          baseline_shapes().factor(pair, Rgb(albedo), Rgb(1)).r;
-        mean += share * s * entering.at(glm::dot(cell.shape.normal, view.key));
-        aimed += share * s *
-                 aimed_irradiance(baseline_shapes().aim(pair, Rgb(albedo), Rgb(1)).r, entering, view, true,
-                                  cell.position, cell.shape.normal, xe, n);
+        const double light = share * s * entering.at(glm::dot(cell.shape.normal, view.key));
+        const LightAim aim(baseline_shapes().aim(pair, Rgb(albedo), Rgb(1)), cell.position, cell.shape.normal,
+                           xe, n, view.camera);
+        mean += light;
+        aimed += light * directions.mean(aim, true, cell.shape.normal);
       }
     }
     INFO(body.name << ": " << walked << " +- " << std::sqrt(variance) << ", by the basis " << aimed

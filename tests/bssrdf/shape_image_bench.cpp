@@ -35,6 +35,7 @@ struct Pixel {
 
 void print(const BodyView& view, const WalkBody& family, int photons) {
   const Sky sky{0.15, 3, view.key};
+  const SkyDirections directions(sky);
   const PathTally plane = half_space_tally({WalkMedium{}, 1000000, 3, false});
   const PathTally body = body_tally(family, {WalkMedium{}, 1000000, 3, 5});
   std::vector<Lobe> plane_lobe, body_lobe;
@@ -112,13 +113,13 @@ void print(const BodyView& view, const WalkBody& family, int photons) {
         for (std::size_t a = 0; a < body_albedos.size(); ++a) {
           const double albedo = body_albedos[a];
           const double all = transmission * cell.area * albedo * s(albedo, pair);
+          const LightAim aim(baseline_shapes().aim(pair, Rgb(albedo), Rgb(1)), cell.position,
+                             cell.shape.normal, xe, n, view.camera);
           for (int light = 0; light < 2; ++light) {
             const double flat = light ? flat_sky[a].at(key) : 1;
             pixel.value[a][light][basis] += all * flat;
-            const double slope = baseline_shapes().aim(pair, Rgb(albedo), Rgb(1)).r;
             pixel.value[a][light][basis_aimed] +=
-                all * aimed_irradiance(slope, flat_sky[a], view, light == 1, cell.position, cell.shape.normal,
-                                       xe, n);
+                all * flat * directions.mean(aim, light == 1, cell.shape.normal);
           }
         }
       }

@@ -161,14 +161,12 @@ TEST_CASE("light's aim is asked on bodies only, and favours light that comes fro
     REQUIRE(entry.aim);
     const Vec3 n = entry.point.shading_normal, chord = entry.point.position - exit.position;
     const Vec3 beyond = glm::normalize(chord - glm::dot(chord, n) * n);
-    const Rgb from_there = entry.aim->at(beyond), from_here = entry.aim->at(-beyond),
-              across = entry.aim->at(n);
+    const Rgb from_there = entry.aim->at(beyond), from_here = entry.aim->at(-beyond);
     for (int c = 0; c < 3; ++c) {
-      CHECK(from_there[c] > across[c] - 1e-12);
-      CHECK(from_here[c] < across[c] + 1e-12);
-      CHECK(from_here[c] >= 0);
+      CHECK(from_there[c] > from_here[c]);
+      CHECK(from_here[c] > 0);
       // Less absorption means longer ways, which forget where they came from.
-      if (c > 0) CHECK(entry.aim->slope[c] > 0.98 * entry.aim->slope[c - 1]);
+      if (c > 0) CHECK(from_there[c] / from_here[c] > 0.98 * from_there[c - 1] / from_here[c - 1]);
     }
   });
 }

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/statistics.h"
+#include "optics/light_aim.h"
 #include "optics/photon_walk.h"
 #include "optics/profile_fit.h"
 #include "optics/profile_table.h"
@@ -156,14 +157,15 @@ TEST_CASE("light's aim: 0 on a half-space, the table's on bodies, reached contin
       double before = 0;
       for (int k = 0; k <= 600; ++k) {
         const double now = aim(d, 1e-4 * k, 0, albedo);
-        CHECK(std::abs(now - before) < 0.02);
+        CHECK(std::abs(now - before) < 0.03);
         before = now;
       }
     }
-  // Independent walks: the mean of w . u where light leaves, over that of its square, three octaves.
+  // Independent walks: the mean of w . u where light leaves, over that of its square, two octaves.
+  const AimSlopes slopes(1.5);
   Rng rng(71);
-  for (const double albedo : {0.5, 0.95})
-    for (const double from : {0.25, 1.0, 4.0}) {
+  for (const double albedo : {0.9, 0.98})
+    for (const double from : {1.0, 4.0}) {
       RunningMoments slope;
       double expected = 0, light = 0;
       for (int k = 0; k < 40000; ++k) {
@@ -174,7 +176,7 @@ TEST_CASE("light's aim: 0 on a half-space, the table's on bodies, reached contin
         const double rho = std::hypot(photon.position.x, photon.position.y);
         const bool counts = end == WalkEnd::left && photon.order > 0 && rho > from && rho < 2 * from;
         const double weight = counts ? std::pow(albedo, static_cast<double>(photon.order)) : 0;
-        const double b = aim(rho, 1, 0, albedo);
+        const double b = slopes.slope(aim(rho, 1, 0, albedo));
         const Vec3 u = photon.position / std::max(rho, 1e-9);
         const double along = 1.5 * (photon.direction.x * u.x + photon.direction.y * u.y);
         // 0.2392: the mean of (w . u)^2 over the Fresnel-weighted cosine.
