@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <variant>
 
 #include "core/error.h"
 #include "core/frame.h"
@@ -20,17 +21,28 @@ constexpr double default_angular_size = pi / 180;
 // Chains of mirrors and internal reflections end here at the latest.
 constexpr int max_specular_chain = 64;
 // Directions of which one is followed where light's aim has a say. docs/probe_sampling.md has the figures.
-constexpr int aimed_looks = 2;
+constexpr int aimed_looks = 3;
 // Radiance that may come from where the environment is dark, in units of its mean.
 constexpr double unseen_share = 0.1;
 
 /// The environment as a few directions, drawn by its own importance.
-ExpectedLight expected_light(const Environment& environment) {
+void add_environment(const Environment& environment, std::vector<ExpectedLight::Distant>& lights) {
   constexpr int side = 24;
-  std::vector<ExpectedLight::Distant> lights;
   for (int k = 0; k < side * side; ++k)
     if (const auto light = environment.sample(Vec2(k / side + 0.5, k % side + 0.5) / double{side}))
       lights.push_back({light->direction, light->radiance.mean() / light->pdf / (side * side)});
+}
+
+/// What shines on a surface by its normal alone; nothing where a light stands at some place.
+std::optional<ExpectedLight> expected_light(const Scene& scene) {
+  std::vector<ExpectedLight::Distant> lights;
+  if (scene.environment) add_environment(*scene.environment, lights);
+  for (const Light& light : scene.lights) {
+    const auto* sun = std::get_if<DirectionalLight>(&light);
+    if (sun == nullptr) return std::nullopt;
+    lights.push_back({-glm::normalize(sun->direction), sun->irradiance.mean()});
+  }
+  if (lights.empty() && !scene.environment) return std::nullopt;
   return ExpectedLight(lights);
 }
 
@@ -120,7 +132,7 @@ SurfaceIntegrator::SurfaceIntegrator(const Scene& scene, const SurfaceOptions& o
     interfaces_.push_back({eta, diffuse_transmittance(eta)});
   }
   if (options.transport != Transport::bssrdf) check_media_apart(scene);
-  if (scene.environment && scene.lights.empty()) expected_light_ = expected_light(*scene.environment);
+  expected_light_ = expected_light(scene);
   if (scene.environment)
     if (const double mean = scene.environment->mean_radiance().mean(); mean > 0)
       unseen_radiance_ = unseen_share * mean;
@@ -158,10 +170,13 @@ void SurfaceIntegrator::prepare_bodies() {
 
 std::unique_ptr<SubsurfaceTransport> SurfaceIntegrator::make_transport(uint32_t object, const Medium& medium,
                                                                        std::vector<uint8_t> boundary) const {
-  if (options_.transport == Transport::bssrdf)
+  if (options_.transport == Transport::bssrdf) {
+    // Images on the half-space basis are a baseline: the guide that they were made with stays.
+    const bool guided = expected_light_ && (options_.basis == Basis::shape || scene_.lights.empty());
     return std::make_unique<BssrdfTransport>(scene_, object, medium, std::move(boundary), options_.model,
                                              options_.basis, options_.placement, options_.distance,
-                                             expected_light_ ? &*expected_light_ : nullptr);
+                                             guided ? &*expected_light_ : nullptr);
+  }
   if (lights_.has_sizeless())
     throw InputError(scene_.name,
                      "light without size: no walk through a smooth boundary can meet it; give it one with "
