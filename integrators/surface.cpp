@@ -22,6 +22,10 @@ constexpr double default_angular_size = pi / 180;
 constexpr int max_specular_chain = 64;
 // Directions of which one is followed where light's aim has a say. docs/probe_sampling.md has the figures.
 constexpr int aimed_looks = 3;
+// So many lamps may guide entries. From nearer than this part of the scene none is expected to shine
+// brighter.
+constexpr std::size_t most_expected_lamps = 8;
+constexpr double least_lamp_size = 0.01;
 // Radiance that may come from where the environment is dark, in units of its mean.
 constexpr double unseen_share = 0.1;
 
@@ -33,17 +37,46 @@ void add_environment(const Environment& environment, std::vector<ExpectedLight::
       lights.push_back({light->direction, light->radiance.mean() / light->pdf / (side * side)});
 }
 
-/// What shines on a surface by its normal alone; nothing where a light stands at some place.
+/// A light that shines from one place; nothing for others.
+std::optional<ExpectedLight::Lamp> expected_lamp(const Light& light, double least_size) {
+  if (const auto* point = std::get_if<PointLight>(&light))
+    return ExpectedLight::Lamp{point->position, point->intensity.mean(), Vec3(0), -1, 0, least_size};
+  if (const auto* spot = std::get_if<SpotLight>(&light)) {
+    const double none = std::cos(spot->outer_cone);
+    return ExpectedLight::Lamp{spot->position,
+                               spot->intensity.mean(),
+                               glm::normalize(spot->direction),
+                               none,
+                               std::max(std::cos(spot->inner_cone), none + 1e-6),
+                               least_size};
+  }
+  if (const auto* disk = std::get_if<DiskLight>(&light)) {
+    const double area = pi * disk->radius * disk->radius;
+    return ExpectedLight::Lamp{disk->position,
+                               disk->radiance.mean() * area,
+                               glm::normalize(disk->direction),
+                               0,
+                               1,
+                               std::max(disk->radius, least_size)};
+  }
+  return std::nullopt;
+}
+
+/// What shines on a surface; nothing where that takes more than a few directions and places to tell.
 std::optional<ExpectedLight> expected_light(const Scene& scene) {
   std::vector<ExpectedLight::Distant> lights;
+  std::vector<ExpectedLight::Lamp> lamps;
   if (scene.environment) add_environment(*scene.environment, lights);
   for (const Light& light : scene.lights) {
-    const auto* sun = std::get_if<DirectionalLight>(&light);
-    if (sun == nullptr) return std::nullopt;
-    lights.push_back({-glm::normalize(sun->direction), sun->irradiance.mean()});
+    if (const auto* sun = std::get_if<DirectionalLight>(&light))
+      lights.push_back({-glm::normalize(sun->direction), sun->irradiance.mean()});
+    else if (const auto lamp = expected_lamp(light, least_lamp_size * scene.bounds.diagonal()))
+      lamps.push_back(*lamp);
+    else
+      return std::nullopt;
   }
-  if (lights.empty() && !scene.environment) return std::nullopt;
-  return ExpectedLight(lights);
+  if ((!scene.environment && scene.lights.empty()) || lamps.size() > most_expected_lamps) return std::nullopt;
+  return ExpectedLight(lights, lamps);
 }
 
 double power_heuristic(double pdf, double other) {

@@ -126,7 +126,7 @@ class SurfaceIntegrator final : public Integrator {
   LightSampler lights_;
   LightSampler near_lights_;  // all but the environment, which the ray that looks for other surfaces finds
   LightGuide guide_;
-  std::optional<ExpectedLight> expected_light_;  // where all light comes from far away
+  std::optional<ExpectedLight> expected_light_;  // where a few directions and places tell it
   double offset_;                                // m: how far rays start off a surface
   double unseen_radiance_ = 1;                   // what other surfaces may be expected to send
   bool stochastic_opacity_ = false;

@@ -23,12 +23,28 @@ Vec3 from_square(Vec2 p) {
   return glm::normalize(n);
 }
 
+struct Arriving {
+  Vec3 direction;     // unit, towards the lamp
+  double irradiance;  // on a surface that faces it
+};
+
+Arriving arriving(const ExpectedLight::Lamp& lamp, const Vec3& position) {
+  const Vec3 towards = lamp.position - position;
+  const double distance = std::max(glm::length(towards), 1e-100);
+  const Vec3 direction = towards / distance;
+  const double share = (-glm::dot(direction, lamp.axis) - lamp.none) / (lamp.full - lamp.none);
+  const double from = std::max(distance, lamp.size);
+  return {direction, lamp.intensity * std::clamp(share, 0.0, 1.0) / (from * from)};
+}
+
 }  // namespace
 
-ExpectedLight::ExpectedLight(std::span<const Distant> lights) {
+ExpectedLight::ExpectedLight(std::span<const Distant> lights, std::span<const Lamp> lamps)
+    : lamps_(lamps.begin(), lamps.end()) {
   // The mean over all normals of a cosine cut at 0 is a quarter.
   double mean = 0;
   for (const Distant& light : lights) mean += 0.25 * light.irradiance;
+  distant_mean_ = mean;
   std::size_t place = 0;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -51,12 +67,36 @@ std::size_t ExpectedLight::cell(const Vec3& normal) {
   return step(p.y) * side + step(p.x);
 }
 
-double ExpectedLight::relative(const Vec3& normal) const {
-  return double{relative_[cell(normal)]};
+double ExpectedLight::mean(const Vec3& position) const {
+  double sum = distant_mean_;
+  for (const Lamp& lamp : lamps_) sum += 0.25 * arriving(lamp, position).irradiance;
+  return sum;
 }
 
-Vec3 ExpectedLight::direction(const Vec3& normal) const {
-  return Vec3(direction_[cell(normal)]);
+double ExpectedLight::relative(const Vec3& position, const Vec3& normal, double mean) const {
+  const double distant = double{relative_[cell(normal)]};
+  if (lamps_.empty()) return distant;
+  if (!(mean > 0)) return 1;
+  double sum = distant_mean_ * distant;
+  for (const Lamp& lamp : lamps_) {
+    const auto [direction, irradiance] = arriving(lamp, position);
+    sum += std::max(0.0, glm::dot(normal, direction)) * irradiance;
+  }
+  return std::max(least, sum / mean);
+}
+
+Vec3 ExpectedLight::direction(const Vec3& position, const Vec3& normal) const {
+  const std::size_t at = cell(normal);
+  if (lamps_.empty()) return Vec3(direction_[at]);
+  double sum = distant_mean_ * double{relative_[at]};
+  Vec3 towards = sum * Vec3(direction_[at]);
+  for (const Lamp& lamp : lamps_) {
+    const auto [direction, facing] = arriving(lamp, position);
+    const double irradiance = std::max(0.0, glm::dot(normal, direction)) * facing;
+    sum += irradiance;
+    towards += irradiance * direction;
+  }
+  return sum > 0 ? towards / sum : Vec3(0);
 }
 
 }  // namespace alabaster

@@ -200,7 +200,11 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
     exit.viewer = within_surface(*viewer, point.surface.shading_normal);
   }
   exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;
-  if (target_.light != nullptr) exit.usual_light = std::sqrt(target_.light->relative(facing));
+  if (target_.light != nullptr) {
+    const Vec3& position = point.surface.position;
+    exit.mean_light = target_.light->mean(position);
+    exit.usual_light = std::sqrt(target_.light->relative(position, facing, exit.mean_light));
+  }
   return result;
 }
 
@@ -410,7 +414,9 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
   }
   value *= candidate.albedo.mean() / exit.typical.mean();
   if (target_.light != nullptr)
-    value *= target_.light->relative(candidate.surface.shading_normal) / exit.usual_light;
+    value *= target_.light->relative(candidate.surface.position, candidate.surface.shading_normal,
+                                     exit.mean_light) /
+             exit.usual_light;
   return value;
 }
 
@@ -424,7 +430,8 @@ double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, 
   const Vec3& normal = candidate.surface.shading_normal;
   double towards = -glm::dot(exit.viewer, along);
   if (target_.light != nullptr)
-    towards += glm::dot(target_.light->direction(normal), within_surface(along, normal));
+    towards +=
+        glm::dot(target_.light->direction(candidate.surface.position, normal), within_surface(along, normal));
   return std::max(least_aim, 1 + mean_aim(exit, pair) * towards);
 }
 

@@ -95,7 +95,8 @@ class ProbeSampler {
     Crossing crossing;
     double near_limit = 0;   // m: beyond it along the chord, only some probes look
     Rgb typical;             // the albedo that draws are aimed at
-    double usual_light = 1;  // that entries are expected to get
+    double mean_light = 0;   // at the exit, over all normals
+    double usual_light = 1;  // that entries are expected to get, over that mean
   };
   /// Asks memory for what prepare() will read of an exit on that triangle.
   void fetch(uint32_t triangle) const;
