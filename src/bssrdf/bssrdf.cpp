@@ -17,8 +17,9 @@ Bssrdf::Bssrdf(const BssrdfMedium& medium) : medium_(medium), distances_(*medium
 }
 
 Rgb Bssrdf::aim(const BssrdfPoint& entry, const BssrdfPoint& exit) const {
-  if (medium_.shape == nullptr) return {};
-  return medium_.shape->families->aim(pair(entry, exit), 0.5 * (entry.albedo + exit.albedo), medium_.sigma_t);
+  if (!shaped_) return {};
+  return medium_.shape->families->aim(pair(entry, exit), 0.5 * (entry.albedo + exit.albedo),
+                                      shaped_->paths());
 }
 
 Rgb Bssrdf::half_space_over_albedo(const Rgb& albedo, double distance) const {

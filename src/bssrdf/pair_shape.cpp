@@ -29,7 +29,7 @@ PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& 
   const Vec3 chord = entry - exit;
   const double square = length_squared(chord);
   PairShape pair;
-  pair.distance = glm::distance(entry, exit);
+  pair.distance = std::sqrt(square);
   pair.bend = std::sqrt(0.5 * (at_entry.bend_square + at_exit.bend_square));
   pair.inverse_thickness = 0.5 * (at_entry.inverse_thickness + at_exit.inverse_thickness);
   // What is a ball but for 2 % is one.
@@ -41,10 +41,11 @@ PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& 
   pair.curvature = std::clamp(curvature, low, std::max(low, high));
   // On a saddle, a pair along the convex direction sends less than on a ball or a cylinder.
   const double hollow = -0.5 * std::min(at_entry.curvature_min + at_exit.curvature_min, 0.0);
-  if (pair.curvature > 0) pair.curvature *= 1 - 0.5 * hollow / (pair.curvature + hollow);
+  if (hollow > 0 && pair.curvature > 0) pair.curvature *= 1 - 0.5 * hollow / (pair.curvature + hollow);
   const double turned = 0.5 * (1 - glm::dot(at_entry.normal, at_exit.normal));
   // Two surfaces that face each other more than those of a cavity of their own curvature would: a gap.
-  pair.reach = 1 - smooth_step(5 * (low - curvature) * pair.distance) * smooth_step((turned - 0.6) / 0.3);
+  if (curvature < low && turned > 0.6)
+    pair.reach = 1 - smooth_step(5 * (low - curvature) * pair.distance) * smooth_step((turned - 0.6) / 0.3);
   // Of the other side nothing is asked where the normals agree but for some 30 degrees.
   pair.far = std::clamp((turned * turned - 0.005) / 0.99, 0.0, 1.0);
   if (pair.far > 0 && pair.inverse_thickness > 0) {

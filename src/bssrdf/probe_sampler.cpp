@@ -187,6 +187,9 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   Exit& exit = *result;
   exit.point = point;
   exit.typical = typical;
+  if (body_light_)
+    exit.shape =
+        ShapeChannel(*model_.medium().shape->families, typical.mean(), model_.medium().sigma_t.mean());
   const Vec3 facing(facing_[point.surface.triangle]);
   const std::array<Vec3, 3> directions = tilted_axes(facing);
   for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis(exit, directions[a]);
@@ -196,7 +199,7 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
     near.distance = 1 / model_.medium().sigma_t.mean();
     near.bend = std::sqrt(point.shape.bend_square);
     near.inverse_thickness = point.shape.inverse_thickness;
-    exit.aimed = mean_aim(exit, near) > aimed_from;
+    exit.aimed = exit.shape.aim(near) > aimed_from;
     exit.viewer = within_surface(*viewer, point.surface.shading_normal);
   }
   exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;
@@ -406,10 +409,9 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
   }
   double value = profile / (2 * pi * distance * candidate.density);
   if (body_light_) {
-    const BssrdfMedium& medium = model_.medium();
     const PairShape pair = model_.pair(candidate.surface.position, candidate.shape,
                                        exit.point.surface.position, exit.point.shape);
-    value *= medium.shape->families->factor(pair, Rgb(exit.typical.mean()), Rgb(medium.sigma_t.mean())).r;
+    value *= exit.shape.factor(pair);
     if (exit.aimed) value *= expected_aim(exit, candidate, pair);
   }
   value *= candidate.albedo.mean() / exit.typical.mean();
@@ -420,11 +422,6 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
   return value;
 }
 
-double ProbeSampler::mean_aim(const Exit& exit, const PairShape& pair) const {
-  const BssrdfMedium& medium = model_.medium();
-  return medium.shape->families->aim(pair, Rgb(exit.typical.mean()), Rgb(medium.sigma_t.mean())).r;
-}
-
 double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const {
   const Vec3 along = (candidate.surface.position - exit.point.surface.position) / pair.distance;
   const Vec3& normal = candidate.surface.shading_normal;
@@ -432,7 +429,7 @@ double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, 
   if (target_.light != nullptr)
     towards +=
         glm::dot(target_.light->direction(candidate.surface.position, normal), within_surface(along, normal));
-  return std::max(least_aim, 1 + mean_aim(exit, pair) * towards);
+  return std::max(least_aim, 1 + exit.shape.aim(pair) * towards);
 }
 
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {

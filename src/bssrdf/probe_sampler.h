@@ -95,6 +95,7 @@ class ProbeSampler {
     Crossing crossing;
     double near_limit = 0;   // m: beyond it along the chord, only some probes look
     Rgb typical;             // the albedo that draws are aimed at
+    ShapeChannel shape;      // factors at its mean, for the shape basis
     double mean_light = 0;   // at the exit, over all normals
     double usual_light = 1;  // that entries are expected to get, over that mean
   };
@@ -139,7 +140,6 @@ class ProbeSampler {
   double importance(const Exit& exit, const Candidate& candidate, double distance) const;
   /// What light's aim makes of an entry there, as far as that may be expected; never 0.
   double expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const;
-  double mean_aim(const Exit& exit, const PairShape& pair) const;
   double radius_density(const Exit& exit, double radius) const;
   struct Part;
   static Part near_part(const Exit& exit, double radius);

@@ -72,27 +72,21 @@ Rgb ShapeFamilies::factor(const PairShape& pair, const Rgb& albedo, const FreePa
   return pair.reach * Rgb(double{factor[0]}, double{factor[1]}, double{factor[2]});
 }
 
-Rgb ShapeFamilies::aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const {
-  const Float4 path = four(Rgb(1) / sigma_t, 1);
-  const Float4 curved = static_cast<float>(pair.bend) * path;
-  const Float4 thin = static_cast<float>(pair.inverse_thickness) * path;
+Rgb ShapeFamilies::aim(const PairShape& pair, const Rgb& albedo, const FreePaths& paths) const {
   const Float4 remainder = remainder_of(albedo);
+  const Float4 share =
+      aim_share(static_cast<float>(pair.bend) * paths.path,
+                static_cast<float>(pair.inverse_thickness) * paths.path, remainder, static_cast<float>(g_));
+  if (!(share[0] > 0 || share[1] > 0 || share[2] > 0)) return Rgb();
   const Rows albedos(fast_row_position(remainder));
-  const Float4 shape =
-      square_root(curved * curved + thin * thin * thickness_fade(remainder, thin, static_cast<float>(g_)));
-  const Float4 log2_rho = fast_log2(static_cast<float>(std::max(pair.distance, 1e-30)) / path);
-  Rgb result;
-  for (int c = 0; c < 3; ++c) {
-    const float share = std::clamp((shape[c] - static_cast<float>(flat)) * 20, 0.f, 1.f);
-    const float along =
-        std::clamp(static_cast<float>(AimGrid::position(double{log2_rho[c]})), 0.f, AimGrid::nodes - 1.001f);
-    const int node = static_cast<int>(along);
-    const float* at = aim_.data() + AimGrid::index(node, albedos.row[c]);
-    const float t = albedos.fraction[c], s = along - static_cast<float>(node);
-    const float low = at[0] + t * (at[1] - at[0]), high = at[rows] + t * (at[rows + 1] - at[rows]);
-    result[c] = double{share * share * (3 - 2 * share) * (low + s * (high - low))};
-  }
-  return result;
+  const Float4 along = aim_position(fast_log2(at_least(pair.distance) / paths.path));
+  const Int4 node = to_integer(along), place = node * rows + albedos.row;
+  const auto at = [&](int c) {
+    const float* corner = aim_.data() + place[c];
+    return load2(corner, corner + rows);
+  };
+  const Float4 slope = share * interpolate(at(0), at(1), at(2), albedos.fraction, along - to_float(node));
+  return Rgb(double{slope[0]}, double{slope[1]}, double{slope[2]});
 }
 
 double ShapeFamilies::factor(ShapeFamily family, double size, double distance, double albedo) const {
@@ -106,6 +100,69 @@ double ShapeFamilies::factor(ShapeFamily family, double size, double distance, d
                                      : one_family<ball_nodes>(table, nodes.node[0], nodes.along[0], inverse,
                                                               log2_inverse, albedos, true);
   return double{fast_exp2(log2_factor)[0]};
+}
+
+ShapeChannel::ShapeChannel(const ShapeFamilies& families, double albedo, double sigma_t)
+    : families_(&families),
+      path_(static_cast<float>(1 / sigma_t)),
+      log2_path_(fast_log2(path_)),
+      remainder_(std::clamp(static_cast<float>(1 - albedo), 0.f, 1.f)) {
+  const float position = fast_row_position(remainder_) * (1.f / ShapeGrid::row_stride);
+  row_ = std::min(static_cast<int32_t>(position), rows - 2);
+  row_fraction_ = position - static_cast<float>(row_);
+}
+
+// The lanes are the families: ball or cavity, near side, far side.
+double ShapeChannel::factor(const PairShape& pair) const {
+  const auto slab = static_cast<float>(1 - pair.sphericity), far = static_cast<float>(pair.far);
+  const float ball = 1 - far * slab;
+  const auto curvature = static_cast<float>(std::abs(pair.curvature));
+  const auto inverse_thickness = static_cast<float>(pair.inverse_thickness);
+  const bool is_curved = ball > 0 && curvature * path_ > least;
+  const bool is_thin = slab > 0 && inverse_thickness * path_ > least;
+  if (!is_curved && !is_thin) return pair.reach;
+
+  const bool is_far = is_thin && far > 0;  // otherwise the pair has no separation
+  const float apart = is_far ? static_cast<float>(1 / pair.separation) : 1.f;
+  const Float8 logs =
+      fast_log2(Float8{std::max(curvature, least_length), std::max(inverse_thickness, least_length), apart, 1,
+                       at_least(pair.distance), at_least(pair.lateral), 1, 1});
+  const Float4 log2_inverse = lower(logs), log2_length = upper(logs);
+  const Float4 log2_distance = __builtin_shufflevector(log2_length, log2_length, 0, 0, 1, 2);
+  constexpr Float4 diameter{1, 0, 0, 0};
+  const Nodes nodes(log2_inverse + log2_distance - diameter);
+  const Sizes<Float4, Int4> sizes(Float4{curvature, inverse_thickness, apart, 0} * path_,
+                                  log2_inverse + log2_path_);
+  constexpr int b = ball_nodes * rows, s = slab_nodes * rows;
+  constexpr int cavities = origin(static_cast<int>(ShapeFamily::cavity));
+  constexpr Int4 stride{b, s, s, s};
+  constexpr Int4 origins{0, origin(static_cast<int>(ShapeFamily::slab_near)),
+                         origin(static_cast<int>(ShapeFamily::slab_far)), 0};
+  const Int4 place = origins + sizes.level * stride + nodes.node * rows + row_;
+  const float* table = families_->table();
+  const float* balls = table + (pair.curvature > 0 ? 0 : cavities);
+  Float4 cells[3]{};
+  if (is_curved) cells[0] = corners<ball_nodes>(balls + place[0], nodes.along[0]);
+  if (is_thin && far < 1) cells[1] = corners<slab_nodes>(table + place[1], nodes.along[1]);
+  if (is_far) cells[2] = corners<slab_nodes>(table + place[2], nodes.along[2]);
+  const Float4 found = interpolate(cells[0], cells[1], cells[2], Float4{} + row_fraction_, sizes.across);
+  const float fade =
+      thickness_fade(remainder_, inverse_thickness * path_, static_cast<float>(families_->g()));
+  const float sum = ball * found[0] + slab * fade * ((1 - far) * found[1] + far * found[2]);
+  return pair.reach * double{fast_exp2(sum)};
+}
+
+double ShapeChannel::aim(const PairShape& pair) const {
+  const float share =
+      aim_share(static_cast<float>(pair.bend) * path_, static_cast<float>(pair.inverse_thickness) * path_,
+                remainder_, static_cast<float>(families_->g()));
+  if (!(share > 0)) return 0;
+  const float along = aim_position(fast_log2(at_least(pair.distance) / path_));
+  const auto node = static_cast<int32_t>(along);
+  const float* at = families_->aim_table() + node * rows + row_;
+  const float low = at[0] + row_fraction_ * (at[1] - at[0]);
+  const float high = at[rows] + row_fraction_ * (at[rows + 1] - at[rows]);
+  return double{share * (low + (along - static_cast<float>(node)) * (high - low))};
 }
 
 }  // namespace alabaster

@@ -57,9 +57,13 @@ class ShapeFamilies {
   }
   /// For shape_lookup.h.
   const float* table() const { return table_.data(); }
+  const float* aim_table() const { return aim_.data(); }
   /// Concentration of light's aim (LightAim), of the half-space's slopes (bake_aim), setting in with
   /// curvature and thinness: 0 on a half-space, in full where they exceed 1/20 per mean free path.
-  Rgb aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const;
+  Rgb aim(const PairShape& pair, const Rgb& albedo, const Rgb& sigma_t) const {
+    return aim(pair, albedo, FreePaths(sigma_t));
+  }
+  Rgb aim(const PairShape& pair, const Rgb& albedo, const FreePaths& paths) const;
   /// factor() in one channel for one family: `size` a radius or thickness and `distance` a chord (balls,
   /// cavities) or lateral distance (slabs), mean free paths.
   double factor(ShapeFamily family, double size, double distance, double albedo) const;
@@ -68,6 +72,22 @@ class ShapeFamilies {
   double g_, eta_;
   std::vector<float> aim_;    // by AimGrid
   std::vector<float> table_;  // per family [size, flat first][node][row]
+};
+
+/// factor() and aim() in one channel, for those who ask for many pairs at one albedo: a third of the cost.
+class ShapeChannel {
+ public:
+  ShapeChannel() = default;
+  /// `families` outlives this.
+  ShapeChannel(const ShapeFamilies& families, double albedo, double sigma_t);
+  double factor(const PairShape& pair) const;
+  double aim(const PairShape& pair) const;
+
+ private:
+  const ShapeFamilies* families_ = nullptr;
+  float path_ = 1, log2_path_ = 0;
+  float remainder_ = 0, row_fraction_ = 0;
+  int32_t row_ = 0;
 };
 
 /// The table of the baseline, g = 0.3, eta = 1.5, compiled into the program.

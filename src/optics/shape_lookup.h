@@ -150,14 +150,34 @@ inline Float8 two_families(const float* ball, const float* slab, const Int4& nod
 
 // 1 on slabs thinner than eight diffusion lengths, 0 beyond ten; `remainder` is 1 - albedo, `inverse` that of
 // the optical thickness.
-inline Float4 thickness_fade(Float4 remainder, Float4 inverse, float g) {
+template <typename Float>
+inline Float thickness_fade(Float remainder, Float inverse, float g) {
   // The squares of thickness / diffusion length against 64 and 100.
-  const Float4 square = inverse * inverse, zero = square - square, one = zero + 1.f;
-  const Float4 absorption = 3.f * remainder * ((1.f - g) + g * remainder);
-  Float4 x = (100.f * square - absorption) / (36.f * square + 1e-30f);
+  const Float square = inverse * inverse, zero = square - square, one = zero + 1.f;
+  const Float absorption = 3.f * remainder * ((1.f - g) + g * remainder);
+  Float x = (100.f * square - absorption) / (36.f * square + 1e-30f);
   x = x < zero ? zero : x;
   x = x < one ? x : one;
   return x * x * (3.f - 2.f * x);
+}
+
+// How far light's aim has set in: on half-spaces not at all, in full above 1/20 per mean free path.
+template <typename Float>
+inline Float aim_share(Float curved, Float thin, Float remainder, float g) {
+  const Float shape = square_root(curved * curved + thin * thin * thickness_fade(remainder, thin, g));
+  Float x = (shape - least) * 20.f;
+  const Float zero = x - x, one = zero + 1.f;
+  x = x > zero ? x : zero;
+  x = x < one ? x : one;
+  return x * x * (3.f - 2.f * x);
+}
+
+// Places among the distances of AimGrid.
+template <typename Float>
+inline Float aim_position(Float log2_rho) {
+  const Float x = 2.f * (log2_rho - static_cast<float>(AimGrid::first_octave)), zero = x - x;
+  const Float end = zero + (AimGrid::nodes - 1.001f), positive = x > zero ? x : zero;
+  return positive < end ? positive : end;
 }
 
 // log2 of ShapeFamilies::factor() over the pair's reach; the last lane is of no use.

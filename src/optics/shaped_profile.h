@@ -18,6 +18,8 @@ class ShapedProfile {
   /// S(alpha, d; shape) / alpha per channel, 1/m^2.
   Rgb over_albedo(const Rgb& albedo, const PairShape& pair) const;
 
+  const FreePaths& paths() const { return paths_; }
+
  private:
   Rgb one_by_one(const Rgb& albedo, const PairShape& pair) const;
 

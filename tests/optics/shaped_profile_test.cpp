@@ -137,3 +137,24 @@ TEST_CASE("the basis with its shape is the half-space's times the factor, bit fo
       }
     }
 }
+
+TEST_CASE("one channel of a shape's factor and of light's aim is what all channels at once are") {
+  Rng rng(13);
+  for (int k = 0; k < 20000; ++k) {
+    PairShape pair = random_pair(rng);
+    pair.reach = rng.uniform();
+    pair.bend = 0.2 * rng.uniform();
+    const double albedo = random_albedo(rng).r, sigma_t = std::exp2(2 * rng.uniform() - 1);
+    const ShapeChannel channel(baseline_shapes(), albedo, sigma_t);
+    const Rgb factor = baseline_shapes().factor(pair, Rgb(albedo), Rgb(sigma_t));
+    CHECK(channel.factor(pair) == Approx(factor.r).epsilon(2e-5));
+    CHECK(channel.aim(pair) ==
+          Approx(baseline_shapes().aim(pair, Rgb(albedo), Rgb(sigma_t)).r).epsilon(1e-4).margin(1e-5));
+    pair.inverse_thickness = pair.separation = pair.lateral = 0;
+    CHECK(channel.factor(pair) ==
+          Approx(baseline_shapes().factor(pair, Rgb(albedo), Rgb(sigma_t)).r).epsilon(2e-5));
+    pair.curvature = pair.inverse_thickness = pair.bend = 0.9 * ShapeFamilies::flat * sigma_t / 1.5;
+    CHECK(channel.factor(pair) == pair.reach);
+    CHECK(channel.aim(pair) == 0);
+  }
+}
