@@ -7,7 +7,7 @@
 
 #include "bssrdf/smoothed_normals.h"
 #include "core/frame.h"
-#include "geometry/tangent.h"
+#include "optics/light_aim.h"
 
 namespace alabaster {
 namespace {
@@ -41,10 +41,8 @@ constexpr double full_worth = 1;
 /// the one around.
 constexpr double rough = 0.05;
 constexpr double contrasting = 0.2;
-/// So they are where the concentration of light's aim exceeds this; no entry counts as worth less for its aim
-/// than the second figure.
+/// So they are where the concentration of light's aim exceeds this.
 constexpr double aimed_from = 0.1;
-constexpr double least_aim = 0.25;
 
 /// Takes one decision off a random number: the part of it below `probability`, stretched to [0, 1) again.
 bool decide(double& u, double probability) {
@@ -200,7 +198,7 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
     near.bend = std::sqrt(point.shape.bend_square);
     near.inverse_thickness = point.shape.inverse_thickness;
     exit.aimed = exit.shape.aim(near) > aimed_from;
-    exit.viewer = within_surface(*viewer, point.surface.shading_normal);
+    exit.viewer = *viewer;
   }
   exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;
   if (target_.light != nullptr) {
@@ -423,13 +421,12 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
 }
 
 double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const {
-  const Vec3 along = (candidate.surface.position - exit.point.surface.position) / pair.distance;
-  const Vec3& normal = candidate.surface.shading_normal;
-  double towards = -glm::dot(exit.viewer, along);
-  if (target_.light != nullptr)
-    towards +=
-        glm::dot(target_.light->direction(candidate.surface.position, normal), within_surface(along, normal));
-  return std::max(least_aim, 1 + exit.shape.aim(pair) * towards);
+  const SurfacePoint &entry = candidate.surface, &left = exit.point.surface;
+  const LightAim aim(Rgb(exit.shape.aim(pair)), entry.position, entry.shading_normal, left.position,
+                     left.shading_normal, exit.viewer);
+  const Vec3 from =
+      target_.light != nullptr ? target_.light->direction(entry.position, entry.shading_normal) : Vec3(0);
+  return aim.at(from).r;
 }
 
 EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, double factor) const {

@@ -91,7 +91,7 @@ class ProbeSampler {
     int component_count = 0;
     int probes = 1;      // that one entry is chosen from, at most 2
     bool aimed = false;  // whether that choice knows of light's aim
-    Vec3 viewer{0};      // towards the camera, the part within the surface
+    Vec3 viewer{0};      // unit, towards the camera; of use where aimed
     Crossing crossing;
     double near_limit = 0;   // m: beyond it along the chord, only some probes look
     Rgb typical;             // the albedo that draws are aimed at
