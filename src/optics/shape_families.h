@@ -74,7 +74,8 @@ class ShapeFamilies {
   std::vector<float> table_;  // per family [size, flat first][node][row]
 };
 
-/// factor() and aim() in one channel, for those who ask for many pairs at one albedo: a third of the cost.
+/// factor() and aim() in one channel, for those who ask for many pairs at one albedo: less work than for
+/// three.
 class ShapeChannel {
  public:
   ShapeChannel() = default;
