@@ -52,7 +52,7 @@ std::optional<SubsurfaceEntry> BssrdfTransport::sample(const SurfacePoint& exit,
   probe_->fetch(exit.triangle);
   BssrdfPoint from = model_->medium().point(exit);
   from.towards_viewer = viewer;
-  const auto entry = probe_->sample_entry(from, sampler, occurrence, viewer);
+  const auto entry = probe_->sample_entry(from, sampler, occurrence);
   if (!entry || entry->weight.is_black()) return std::nullopt;
   SubsurfaceEntry result{entry->point.surface, std::nullopt, std::nullopt, entry->weight * lobe_};
   const Rgb concentration = model_->aim(entry->point, from);

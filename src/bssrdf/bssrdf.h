@@ -21,7 +21,8 @@ struct BssrdfPoint {
   SurfacePoint surface;
   Rgb albedo;
   PointShape shape{};  // filled for the shape basis only
-  /// Of an exit: unit, outside, towards who sees the light; 0: averaged over directions. For composite:view.
+  /// Of an exit: unit, outside, towards who sees the light; 0: averaged over directions. For composite:view,
+  /// and for the choice of entries under light's aim.
   Vec3 towards_viewer{0};
 };
 

@@ -176,8 +176,7 @@ void ProbeSampler::fetch(uint32_t triangle) const {
   if (!typical_.empty()) __builtin_prefetch(&typical_[triangle]);
 }
 
-std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point,
-                                                        const std::optional<Vec3>& viewer) const {
+std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point) const {
   const Rgb typical = typical_albedo(point);
   if (typical.is_black() || !(area_.area() > 0)) return std::nullopt;
 
@@ -192,13 +191,12 @@ std::optional<ProbeSampler::Exit> ProbeSampler::prepare(const BssrdfPoint& point
   const std::array<Vec3, 3> directions = tilted_axes(facing);
   for (std::size_t a = 0; a < 3; ++a) exit.axes[a] = axis(exit, directions[a]);
   add_components(exit);
-  if (viewer && body_light_) {
+  if (body_light_ && point.towards_viewer != Vec3(0)) {
     PairShape near;  // where aim is strong
     near.distance = 1 / model_.medium().sigma_t.mean();
     near.bend = std::sqrt(point.shape.bend_square);
     near.inverse_thickness = point.shape.inverse_thickness;
     exit.aimed = exit.shape.aim(near) > aimed_from;
-    exit.viewer = *viewer;
   }
   exit.probes = exit.aimed || varied(exit, facing) ? 2 : 1;
   if (target_.light != nullptr) {
@@ -423,7 +421,7 @@ double ProbeSampler::importance(const Exit& exit, const Candidate& candidate, do
 double ProbeSampler::expected_aim(const Exit& exit, const Candidate& candidate, const PairShape& pair) const {
   const SurfacePoint &entry = candidate.surface, &left = exit.point.surface;
   const LightAim aim(Rgb(exit.shape.aim(pair)), entry.position, entry.shading_normal, left.position,
-                     left.shading_normal, exit.viewer);
+                     left.shading_normal, exit.point.towards_viewer);
   const Vec3 from =
       target_.light != nullptr ? target_.light->direction(entry.position, entry.shading_normal) : Vec3(0);
   return aim.at(from).r;
@@ -438,9 +436,8 @@ EntrySample ProbeSampler::finish(const Exit& exit, const Candidate& candidate, d
   return entry;
 }
 
-std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, const EntryRandom& u,
-                                                      const std::optional<Vec3>& viewer) const {
-  const std::optional<Exit> exit = prepare(point, viewer);
+std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, const EntryRandom& u) const {
+  const std::optional<Exit> exit = prepare(point);
   if (!exit) return std::nullopt;
   static thread_local std::vector<Candidate> candidates;
   candidates.clear();
@@ -465,13 +462,12 @@ std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& point, 
 }
 
 std::optional<EntrySample> ProbeSampler::sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
-                                                      uint32_t occurrence,
-                                                      const std::optional<Vec3>& viewer) const {
+                                                      uint32_t occurrence) const {
   EntryRandom u;
   u.choice = sampler.get_2d(Dimension::entry_strategy, occurrence);
   u.disk = sampler.get_2d(Dimension::entry_radius, occurrence);
   u.pick = sampler.get_1d(Dimension::entry_hit, occurrence);
-  return sample_entry(exit, u, viewer);
+  return sample_entry(exit, u);
 }
 
 std::size_t ProbeSampler::sample_entries(const BssrdfPoint& point, const EntryRandom& u,

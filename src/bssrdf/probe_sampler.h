@@ -91,7 +91,6 @@ class ProbeSampler {
     int component_count = 0;
     int probes = 1;      // that one entry is chosen from, at most 2
     bool aimed = false;  // whether that choice knows of light's aim
-    Vec3 viewer{0};      // unit, towards the camera; of use where aimed
     Crossing crossing;
     double near_limit = 0;   // m: beyond it along the chord, only some probes look
     Rgb typical;             // the albedo that draws are aimed at
@@ -101,9 +100,9 @@ class ProbeSampler {
   };
   /// Asks memory for what prepare() will read of an exit on that triangle.
   void fetch(uint32_t triangle) const;
-  /// Nothing where no light can leave, because the albedo is 0. `viewer` is the unit vector towards the
-  /// camera, where entries are to be chosen with light's aim in mind (Bssrdf::aim).
-  std::optional<Exit> prepare(const BssrdfPoint& exit, const std::optional<Vec3>& viewer = {}) const;
+  /// Nothing where no light can leave, because the albedo is 0. For exits that know their viewer, entries are
+  /// chosen with light's aim in mind (Bssrdf::aim).
+  std::optional<Exit> prepare(const BssrdfPoint& exit) const;
 
   /// Chooses a probe without tracing it; `choice` in [0, 1) picks axis and component. Nothing when the chord
   /// misses the object's bounding sphere.
@@ -113,12 +112,10 @@ class ProbeSampler {
 
   /// Draws ONE entry among all hits of the probe, so that one shadow ray serves it. Nothing when there is
   /// none: then the estimate is 0.
-  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const EntryRandom& u,
-                                          const std::optional<Vec3>& viewer = {}) const;
+  std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const EntryRandom& u) const;
   /// The same with the sampler's dimensions; `occurrence` tells draws for one pixel sample apart.
   std::optional<EntrySample> sample_entry(const BssrdfPoint& exit, const Sampler& sampler,
-                                          uint32_t occurrence = 0,
-                                          const std::optional<Vec3>& viewer = {}) const;
+                                          uint32_t occurrence = 0) const;
   /// All entries of one draw. Where they are more than `entries` holds, a random part of them, weighted up.
   /// Returns how many were filled.
   std::size_t sample_entries(const BssrdfPoint& exit, const EntryRandom& u,

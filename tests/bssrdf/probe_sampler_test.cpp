@@ -125,7 +125,8 @@ TEST_CASE("one entry, and all entries, are unbiased for the integral over the su
     for (const char* name : all_models) {
       if (c.basis == Basis::shape && std::string_view(name).find(':') != std::string_view::npos) continue;
       const auto model = make_bssrdf(name, medium, options);
-      const BssrdfPoint exit = medium.point(points_on(body.mesh, 1, 3).front());
+      BssrdfPoint exit = medium.point(points_on(body.mesh, 1, 3).front());
+      exit.towards_viewer = glm::normalize(Vec3(-2, 1, 1));  // guides, as the light is: it must not matter
       const auto irradiance = [](const Vec3& p) { return 1 + 0.5 * std::sin(p.x + 2 * p.y) * std::cos(p.z); };
       const auto integrand = [&](uint32_t triangle, Vec2 barycentric) {
         const SurfacePoint entry = body.mesh.surface_point(triangle, barycentric);
@@ -135,14 +136,13 @@ TEST_CASE("one entry, and all entries, are unbiased for the integral over the su
 
       const ExpectedLight light(std::array{ExpectedLight::Distant{glm::normalize(Vec3(1, 2, 3)), 1}});
       ProbeTarget target = body.target();
-      target.light = &light;  // guides, as the viewer is: they must not matter
-      const Vec3 viewer = glm::normalize(Vec3(-2, 1, 1));
+      target.light = &light;
       const ProbeSampler sampler(*model, target);
       RunningMoments one, all;
       Rng rng(17);
       std::array<EntrySample, 2> entries;  // few, so that picking among more is tested as well
       for (int i = 0; i < 8000; ++i) {
-        const auto entry = sampler.sample_entry(exit, entry_random(rng), viewer);
+        const auto entry = sampler.sample_entry(exit, entry_random(rng));
         one.add(entry ? entry->weight.mean() * irradiance(entry->point.surface.position) : 0);
         const std::size_t count = sampler.sample_entries(exit, entry_random(rng), entries);
         double sum = 0;
@@ -179,19 +179,22 @@ TEST_CASE("a choice of entries that knows viewer and light takes most of the noi
     return entry.weight.mean() * std::max(0.0, glm::dot(n, towards_light)) * aim.at(towards_light).mean();
   };
   Rng rng(29);
-  const auto variances = [&](const std::optional<Vec3>& seen_from) {
+  const auto variances = [&](const Vec3& seen_from) {
+    BssrdfPoint known = exit;
+    known.towards_viewer = seen_from;
     RunningMoments of_batches;
     for (int batch = 0; batch < 40; ++batch) {
       RunningMoments moments;
       for (int i = 0; i < 500; ++i) {
-        const auto entry = sampler.sample_entry(exit, entry_random(rng), seen_from);
+        const auto entry = sampler.sample_entry(known, entry_random(rng));
         moments.add(entry ? worth(*entry) : 0);
       }
       of_batches.add(moments.variance());
     }
     return of_batches;
   };
-  const RunningMoments ignorant = variances({}), knowing = variances(viewer), misled = variances(-viewer);
+  const RunningMoments ignorant = variances(Vec3(0)), knowing = variances(viewer),
+                       misled = variances(-viewer);
   const auto exceeds = [](const RunningMoments& a, double factor, const RunningMoments& b) {
     return (a.mean() - factor * b.mean()) / std::hypot(a.standard_error(), factor * b.standard_error());
   };
