@@ -50,9 +50,13 @@ std::vector<VertexSample> vertex_samples(const TriangleMesh& mesh, const HalfEdg
 /// Vertices around one, by a walk along edges.
 class Neighbourhood {
  public:
-  Neighbourhood(const HalfEdgeMesh& half_edges, const std::vector<VertexSample>& samples,
-                const CurvatureOptions& options)
-      : half_edges_(half_edges), samples_(samples), options_(options), visited_(samples.size(), no_index) {}
+  Neighbourhood(const HalfEdgeMesh& half_edges, const std::vector<VertexSample>& samples, double radius,
+                int max_vertices)
+      : half_edges_(half_edges),
+        samples_(samples),
+        least_radius_(radius),
+        limit_(static_cast<std::size_t>(std::max(max_vertices, 6))),
+        visited_(samples.size(), no_index) {}
 
   /// Fills vertices() and radius(). The centre comes first.
   void gather(uint32_t centre) {
@@ -64,11 +68,10 @@ class Neighbourhood {
       sum += length, longest = std::max(longest, length);
     }
     const double mean = ring_.empty() ? 0 : sum / static_cast<double>(ring_.size());
-    radius_ = std::max({options_.radius, 3 * mean, 1.5 * longest});
+    radius_ = std::max({least_radius_, 3 * mean, 1.5 * longest});
     vertices_.assign(1, centre);
     visited_[centre] = centre;
-    const auto limit = static_cast<std::size_t>(std::max(options_.max_neighbours, 6));
-    for (std::size_t i = 0; i < vertices_.size() && vertices_.size() < limit; ++i) {
+    for (std::size_t i = 0; i < vertices_.size() && vertices_.size() < limit_; ++i) {
       half_edges_.ring(vertices_[i], ring_);
       for (const uint32_t v : ring_) {
         if (visited_[v] == centre || glm::length(samples_[v].position - origin) >= radius_) continue;
@@ -76,7 +79,7 @@ class Neighbourhood {
         vertices_.push_back(v);
       }
     }
-    if (vertices_.size() >= limit) shrink_radius(origin);
+    if (vertices_.size() >= limit_) shrink_radius(origin);
   }
 
   const std::vector<uint32_t>& vertices() const { return vertices_; }
@@ -93,7 +96,8 @@ class Neighbourhood {
 
   const HalfEdgeMesh& half_edges_;
   const std::vector<VertexSample>& samples_;
-  const CurvatureOptions& options_;
+  double least_radius_;
+  std::size_t limit_;
   std::vector<uint32_t> visited_;  // the centre that last saw the vertex
   std::vector<uint32_t> vertices_, ring_;
   double radius_ = 0;
@@ -102,11 +106,13 @@ class Neighbourhood {
 struct Fit {
   double curvature_min = 0, curvature_max = 0;
   Vec3 normal{0};
+  double residual = 0;  // mean square of what is left of the normals
 };
 
 /// Weighted least squares of n_j = n + S (x_j - x) in the tangent plane of the first vertex.
+/// Normals farther from the first one's than `least_cosine` are left out.
 Fit fit_shape_operator(const std::vector<VertexSample>& samples, const std::vector<uint32_t>& vertices,
-                       double radius) {
+                       double radius, double least_cosine = -2) {
   const VertexSample& centre = samples[vertices[0]];
   const Frame frame(centre.normal);
   struct Row {
@@ -116,7 +122,7 @@ Fit fit_shape_operator(const std::vector<VertexSample>& samples, const std::vect
   const auto row_of = [&](uint32_t v) {
     const Vec3 x = frame.to_local(samples[v].position - centre.position);
     const Vec3 n = frame.to_local(samples[v].normal);
-    const double r = std::min(glm::length(x) / radius, 1.0);
+    const double r = n.z < least_cosine ? 1 : std::min(glm::length(x) / radius, 1.0);
     return Row{Vec2(x), Vec2(n), samples[v].area * (1 - r * r) * (1 - r * r)};
   };
   double sum = 0;
@@ -146,7 +152,14 @@ Fit fit_shape_operator(const std::vector<VertexSample>& samples, const std::vect
   const double spread = std::hypot(half_difference, s.y);
   const Vec2 n = mean_n - Vec2(s.x * mean_x.x + s.y * mean_x.y, s.y * mean_x.x + s.z * mean_x.y);
   const Vec3 local(n, std::sqrt(std::max(1 - glm::dot(n, n), 0.0)));
-  return {mean - spread, mean + spread, unit_or(frame.to_world(local), centre.normal)};
+  double residual = 0;
+  for (const uint32_t v : vertices) {
+    const Row row = row_of(v);
+    const Vec2 x = row.x - mean_x;
+    const Vec2 left = row.n - mean_n - Vec2(s.x * x.x + s.y * x.y, s.y * x.x + s.z * x.y);
+    residual += row.weight * glm::dot(left, left) / sum;
+  }
+  return {mean - spread, mean + spread, unit_or(frame.to_world(local), centre.normal), residual};
 }
 
 /// 1 / the distance along -normal to where the object ends; 0 when it does not.
@@ -178,7 +191,8 @@ CurvatureField::CurvatureField(const TriangleMesh& mesh, const RayScene& scene, 
   // Few ranges: each holds a mark for every vertex.
   const std::size_t grain = samples.size() / (4 * static_cast<std::size_t>(thread_count())) + 1;
   parallel_for(samples.size(), grain, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood neighbourhood(half_edges, samples, options);
+    Neighbourhood neighbourhood(half_edges, samples, options.radius, options.max_neighbours);
+    Neighbourhood around(half_edges, samples, options.coarse_radius, 4 * options.max_neighbours);
     std::vector<uint32_t> fan;
     std::vector<Hit> hits;
     for (auto v = static_cast<uint32_t>(begin); v < end; ++v) {
@@ -189,6 +203,12 @@ CurvatureField::CurvatureField(const TriangleMesh& mesh, const RayScene& scene, 
       shape.curvature_min = static_cast<float>(fit.curvature_min);
       shape.curvature_max = static_cast<float>(fit.curvature_max);
       shape.normal = Vec3f(fit.normal);
+      if (options.coarse_radius > 0) {
+        // What is turned by more than 41 degrees is another side of the body, not a wrinkle.
+        around.gather(v);
+        const Fit coarse = fit_shape_operator(samples, around.vertices(), around.radius(), 0.75);
+        shape.roughness = static_cast<float>(coarse.residual);
+      }
       shape.inverse_thickness = static_cast<float>(
           inverse_thickness(mesh, scene, object, samples[v].position, fit.normal, fan, hits));
     }
@@ -204,6 +224,7 @@ LocalShape CurvatureField::at(uint32_t triangle, Vec2 barycentric) const {
     shape.curvature_min += weights[k] * double{vertex.curvature_min};
     shape.curvature_max += weights[k] * double{vertex.curvature_max};
     shape.inverse_thickness += weights[k] * double{vertex.inverse_thickness};
+    shape.roughness += weights[k] * double{vertex.roughness};
     shape.normal += weights[k] * Vec3(vertex.normal);
   }
   shape.normal = unit_or(shape.normal, Vec3(shapes_[corner[0]].normal));

@@ -34,7 +34,9 @@ BssrdfTransport::BssrdfTransport(const Scene& scene, uint32_t object, const Medi
   const SceneObject& body = scene.objects[object];
   if (basis == Basis::shape) {
     families_ = shapes_for(profile_->g(), profile_->eta());
-    curvature_ = CurvatureField(body.mesh, scene.rays, object);
+    CurvatureOptions options;
+    options.coarse_radius = coarse_radius / medium.sigma_t().min();
+    curvature_ = CurvatureField(body.mesh, scene.rays, object, options);
     shape_ = {families_.get(), &curvature_};
   }
   const BssrdfMedium below{profile_.get(), medium.sigma_t(), body.albedo.get(),

@@ -18,7 +18,9 @@ PointShape::PointShape(const LocalShape& local, double thickest)
     : normal(local.normal),
       curvature_min(local.curvature_min),
       curvature_max(local.curvature_max),
-      inverse_thickness(local.inverse_thickness) {
+      inverse_thickness(local.inverse_thickness),
+      roughness(local.roughness),
+      coarse_distance(0.5 * coarse_radius / thickest_body * thickest) {
   const double half_thickness = 0.5 / std::max(inverse_thickness, 1 / thickest);
   bend_square = 0.5 * (curvature_min * curvature_min + curvature_max * curvature_max);
   sphericity = std::min(bend_square * half_thickness * half_thickness, 1.0);
@@ -46,6 +48,9 @@ PairShape pair_shape(const Vec3& entry, const PointShape& at_entry, const Vec3& 
   // Two surfaces that face each other more than those of a cavity of their own curvature would: a gap.
   if (curvature < low && turned > 0.6)
     pair.reach = 1 - smooth_step(5 * (low - curvature) * pair.distance) * smooth_step((turned - 0.6) / 0.3);
+  // Far away, light is spread over a surface that wrinkles make larger, at both ends alike.
+  const double rough = at_entry.roughness + at_exit.roughness;
+  if (rough > 0) pair.reach *= std::exp(-0.25 * rough * smooth_step(pair.distance / at_exit.coarse_distance));
   // Of the other side nothing is asked where the normals agree but for some 30 degrees.
   pair.far = std::clamp((turned * turned - 0.005) / 0.99, 0.0, 1.0);
   if (pair.far > 0 && pair.inverse_thickness > 0) {

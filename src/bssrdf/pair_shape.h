@@ -9,6 +9,9 @@ namespace alabaster {
 /// Mean free paths: a body thicker than this counts as having nothing behind.
 inline constexpr double thickest_body = 1024;
 
+/// Mean free paths: over this neighbourhood wrinkles count as roughness (CurvatureOptions::coarse_radius).
+inline constexpr double coarse_radius = 4;
+
 /// What the shape basis asks of one point, read once. Lengths in metres.
 struct PointShape {
   Vec3 normal{0};                               // unit, outwards, of the smoothed surface
@@ -16,6 +19,8 @@ struct PointShape {
   double inverse_thickness = 0;                 // 1/m
   double sphericity = 0;                        // [0, 1]
   double bend_square = 0;                       // 1/m^2: mean square of the principal curvatures
+  double roughness = 0;                         // LocalShape's
+  double coarse_distance = 0;                   // m: from here on pairs see the smoothed surface
 
   PointShape() = default;
   /// `thickest` (m) is what counts as nothing behind.

@@ -98,6 +98,31 @@ TEST_CASE("the shape of a pair does not depend on its order", "[bssrdf]") {
   }
 }
 
+TEST_CASE(
+    "far away, light spreads over the larger surface that wrinkles make, continuously and at both ends alike",
+    "[bssrdf]") {
+  LocalShape flat;
+  flat.normal = Vec3(0, 0, 1);
+  LocalShape rough = flat;
+  rough.roughness = 0.2;
+  const PointShape smooth(flat, thickest_body), wrinkled(rough, thickest_body);
+  const auto reach = [](double d, const PointShape& a, const PointShape& b) {
+    return pair_shape(Vec3(d, 0, 0), a, Vec3(0), b).reach;
+  };
+  CHECK(reach(10, smooth, smooth) == 1);
+  CHECK(reach(10, wrinkled, wrinkled) == Approx(std::exp(-0.1)));  // 1 / (1 + roughness / 2), nearly
+  CHECK(reach(10, smooth, wrinkled) == reach(10, wrinkled, smooth));
+  CHECK(reach(10, smooth, wrinkled) * reach(10, smooth, wrinkled) == Approx(reach(10, wrinkled, wrinkled)));
+  double before = 1;
+  for (int k = 1; k <= 300; ++k) {
+    const double now = reach(0.01 * k, wrinkled, wrinkled);
+    CHECK(now <= before);
+    CHECK(before - now < 0.001);
+    before = now;
+  }
+  CHECK(reach(1e-3, wrinkled, wrinkled) == Approx(1).epsilon(1e-6));
+}
+
 TEST_CASE("radiosity of spheres and slabs within 2 % of walks in them, of others within their goals",
           "[bssrdf]") {
   struct Case {

@@ -166,6 +166,39 @@ TEST_CASE("noise on the vertices is averaged away by a wider neighbourhood", "[c
   CHECK(wide_error < narrow_error / 2.5);
 }
 
+TEST_CASE("wrinkles are rough, spheres and planes are not", "[curvature]") {
+  CurvatureOptions options;
+  options.coarse_radius = 0.5;
+  options.max_neighbours = 1000;
+  for_each_centre(Shaped(make_sphere(1, 64), options), [](const SurfacePoint&, const LocalShape& shape) {
+    CHECK(std::abs(shape.roughness) < 2e-4);
+  });
+  TriangleMesh sheet = make_plane(1.6, 100);
+  for_each_centre(Shaped(sheet, options),
+                  [](const SurfacePoint&, const LocalShape& shape) { CHECK(shape.roughness == 0); });
+  // z = h sin(k x): the mean square of the slope is h^2 k^2 / 2, of which the vertices' normals, means over
+  // their triangles, and the fit take a part.
+  const double frequency = 2 * pi / 0.15;
+  const auto waves = [&](double height) {
+    TriangleMesh wavy = sheet;
+    for (Vec3& p : wavy.positions) p.z += height * std::sin(frequency * p.x);
+    double sum = 0;
+    int count = 0;
+    for_each_centre(Shaped(wavy, options), [&](const SurfacePoint& point, const LocalShape& shape) {
+      if (std::abs(point.position.x) < 0.3 && std::abs(point.position.y) < 0.3)
+        sum += shape.roughness, ++count;
+    });
+    return sum / count / (0.5 * height * height * frequency * frequency);
+  };
+  const double low = waves(0.002), high = waves(0.004);
+  CHECK(low < 1);
+  CHECK(low > 0.7);
+  CHECK(high == Approx(low).epsilon(0.05));
+  // Without a radius nothing is measured.
+  for_each_centre(Shaped(sheet),
+                  [](const SurfacePoint&, const LocalShape& shape) { CHECK(shape.roughness == 0); });
+}
+
 TEST_CASE("a coarse, faceted sphere is still a sphere", "[curvature]") {
   const Shaped shaped(make_blob(1, 0, 8));
   CHECK(worst_error(shaped, 1, smaller, [](const Vec3&) { return 1.0; }) < 0.1);
