@@ -13,7 +13,10 @@ namespace alabaster {
 
 namespace {
 
-constexpr uint64_t chunk_photons = 1 << 15;
+// Photons of a chunk, the unit in which they are shared out among stages: enough for some to reach the last.
+uint64_t chunk_photons(const BodyWalkOptions& options) {
+  return uint64_t{1} << (15 + options.stages.first_thinning);
+}
 constexpr float never = 1e30f;
 
 // The lanes' boundary distances: CurvedBody's and Slab's in single precision, without branches.
@@ -52,23 +55,13 @@ void tally_exit(const Slab& slab, PathTally& tally, const Photon& p, double cosi
     tally.add_exit(p.order, lateral, cosine);
 }
 
-// How many photons end at each stage when none goes beyond the last.
-uint64_t photons_of_stage(int stage, int last, uint64_t total) {
-  return stage < last ? WalkStages::photons(stage, total) : stage == last ? total >> stage : 0;
-}
-
 template <typename Body, typename Lanes>
 class BodyLaneWalk : LaneState {
  public:
   BodyLaneWalk(const Body& body, const BodyWalkOptions& options, uint64_t stream, PathTally& tally)
-      : LaneState(options.seed, stream),
-        body_(body),
-        lanes_(body),
-        medium_(options.medium),
-        tally_(tally),
-        stage_(options.last_stage) {
+      : LaneState(options.seed, stream), body_(body), lanes_(body), medium_(options.medium), tally_(tally) {
     for (int stage = 0; stage < WalkStages::count; ++stage)
-      to_launch_[stage] = photons_of_stage(stage, options.last_stage, chunk_photons);
+      to_launch_[stage] = options.stages.photons(stage, chunk_photons(options));
   }
 
   void run() {
@@ -180,7 +173,7 @@ class BodyLaneWalk : LaneState {
   WalkMedium medium_;
   PathTally& tally_;
   uint64_t to_launch_[WalkStages::count];
-  int stage_;
+  int stage_ = WalkStages::count - 1;
   alignas(64) int32_t crosses_[lane_count]{};
 };
 
@@ -198,8 +191,8 @@ void walk_photon(const Body& body, const WalkMedium& medium, int stage, Rng& rng
 }
 
 template <typename Chunk>
-PathTally tally_chunks(const WalkBody& body, uint64_t photons, const Chunk& chunk) {
-  const uint64_t chunks = (photons + chunk_photons - 1) / chunk_photons;
+PathTally tally_chunks(const WalkBody& body, const BodyWalkOptions& options, const Chunk& chunk) {
+  const uint64_t photons = chunk_photons(options), chunks = (options.photons + photons - 1) / photons;
   PathTally total(false, body.is_slab());
   std::mutex mutex;
   parallel_for(chunks, (chunks + 7) / 8, [&](std::size_t begin, std::size_t end) {
@@ -214,7 +207,7 @@ PathTally tally_chunks(const WalkBody& body, uint64_t photons, const Chunk& chun
 }  // namespace
 
 PathTally body_tally(const WalkBody& body, const BodyWalkOptions& options) {
-  return tally_chunks(body, options.photons, [&](uint64_t chunk, PathTally& tally) {
+  return tally_chunks(body, options, [&](uint64_t chunk, PathTally& tally) {
     if (body.is_slab())
       BodyLaneWalk<Slab, SlabLanes>(Slab{body.thickness}, options, chunk, tally).run();
     else
@@ -223,10 +216,10 @@ PathTally body_tally(const WalkBody& body, const BodyWalkOptions& options) {
 }
 
 PathTally body_tally_scalar(const WalkBody& body, const BodyWalkOptions& options) {
-  return tally_chunks(body, options.photons, [&](uint64_t chunk, PathTally& tally) {
+  return tally_chunks(body, options, [&](uint64_t chunk, PathTally& tally) {
     Rng rng(options.seed, chunk);
     for (int stage = 0; stage < WalkStages::count; ++stage)
-      for (uint64_t i = photons_of_stage(stage, options.last_stage, chunk_photons); i > 0; --i)
+      for (uint64_t i = options.stages.photons(stage, chunk_photons(options)); i > 0; --i)
         if (body.is_slab())
           walk_photon(Slab{body.thickness}, options.medium, stage, rng, tally);
         else

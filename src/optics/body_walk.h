@@ -54,9 +54,7 @@ struct BodyWalkOptions {
   WalkMedium medium;
   uint64_t photons = 1000000;  // rounded up to whole chunks
   uint64_t seed = 1;
-  /// Photons still inside at the limit of this stage of WalkStages are given up: around a small cavity most
-  /// never come back.
-  int last_stage = WalkStages::count - 1;
+  WalkStages stages = {};
 };
 
 /// Tallies where photons of uniform incident radiance leave: by chord, on a slab by lateral distance on

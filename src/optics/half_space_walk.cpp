@@ -45,7 +45,7 @@ PathTally half_space_tally_scalar(const HalfSpaceWalkOptions& options) {
   return tally_chunks(options, {}, [&](uint64_t chunk, PathTally& tally) {
     Rng rng(options.seed, chunk);
     for (int stage = 0; stage < WalkStages::count; ++stage)
-      for (uint64_t i = WalkStages::photons(stage, photons_per_chunk); i > 0; --i)
+      for (uint64_t i = WalkStages().photons(stage, photons_per_chunk); i > 0; --i)
         walk_photon(options.medium, stage, rng, tally);
   });
 }

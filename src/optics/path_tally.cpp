@@ -59,7 +59,7 @@ std::vector<Estimate> weigh(const PathTally& tally, double albedo, int bins, con
   for (int group = 1; group < OrderGroups::count; ++group) {
     const double score = OrderGroups::mean_power(group, albedo);
     if (score <= 0) continue;
-    const int stage = stage_of_group(group);
+    const int stage = tally.stage_of_group(group);
     for (int bin = 0; bin < bins; ++bin)
       means[static_cast<std::size_t>(bin)].add(stage, score, counts(group, bin));
   }
@@ -70,13 +70,6 @@ std::vector<Estimate> weigh(const PathTally& tally, double albedo, int bins, con
 }
 
 }  // namespace
-
-int stage_of_group(int group) {
-  const int64_t order = OrderGroups::first(group);
-  int stage = 0;
-  while (order > WalkStages::limit(stage)) ++stage;
-  return stage;
-}
 
 PathTally::PathTally(bool normal_view, bool far_side)
     : exits_(static_cast<std::size_t>(OrderGroups::count) * RadialBins::count),
@@ -91,6 +84,13 @@ void PathTally::merge(const PathTally& other) {
   for (std::size_t i = 0; i < normal_views_.size(); ++i) normal_views_[i] += other.normal_views_[i];
   for (std::size_t i = 0; i < stopped_.size(); ++i) stopped_[i] += other.stopped_[i];
   collisions_ += other.collisions_;
+}
+
+int PathTally::stage_of_group(int group) const {
+  const int64_t order = OrderGroups::first(group);
+  int stage = stopped(0) > 0 ? 0 : 1;
+  while (order > WalkStages::limit(stage)) ++stage;
+  return stage;
 }
 
 uint64_t PathTally::exits_of_stage(int stage) const {

@@ -15,16 +15,32 @@ struct Estimate {
 };
 
 /// The orders at which some photons are stopped on purpose. Paths get long (the mean number of collisions up
-/// to order N grows as sqrt(N)), so only a part of the photons is followed beyond each stage: 63 collisions
-/// for all, and for half as many each time the limit grows fourfold, to 2^20 - 1. Which photons go on is
-/// fixed before they start, whatever their paths.
+/// to order N grows as sqrt(N)), so only a part of the photons is followed beyond each stage: unless said
+/// otherwise 63 collisions for all, and for half as many each time the limit grows fourfold, to 2^20 - 1.
+/// Which photons go on is fixed before they start, whatever their paths.
 struct WalkStages {
-  static constexpr int count = 8;
-  static constexpr int64_t limit(int stage) { return (int64_t{64} << (2 * stage)) - 1; }
-  /// How many of `total` photons are stopped at the limit of that stage.
-  static constexpr uint64_t photons(int stage, uint64_t total) {
-    const uint64_t going_on = stage == count - 1 ? 0 : total >> (stage + 1);
-    return (total >> stage) - going_on;
+  static constexpr int count = 9;
+  static constexpr int64_t limit(int stage) { return (int64_t{16} << (2 * stage)) - 1; }
+
+  /// log2 of all photons over those that go on after the first stage, which ends with the 15th collision:
+  /// what returns at low albedo.
+  int first_thinning = 0;
+  /// From the end of this stage on a quarter goes on instead of half. Where few leave in any stage, as around
+  /// a small cavity, that spends as much on each.
+  int quartered_from = count;
+  /// Photons still inside after this stage are given up.
+  int last = count - 1;
+
+  /// How many of `total` photons are followed into that stage.
+  constexpr uint64_t followed(int stage, uint64_t total) const {
+    if (stage > last) return 0;
+    if (stage == 0) return total;
+    const int quartered = stage > quartered_from ? stage - quartered_from : 0;
+    return total >> (first_thinning + stage - 1 + quartered);
+  }
+  /// How many are stopped at its limit.
+  constexpr uint64_t photons(int stage, uint64_t total) const {
+    return followed(stage, total) - followed(stage + 1, total);
   }
 };
 
@@ -80,6 +96,9 @@ class PathTally {
   uint64_t normal_views(int group, int bin) const {
     return normal_views_[static_cast<std::size_t>(group) * RadialBins::count + static_cast<std::size_t>(bin)];
   }
+  /// Stage in which an exit of that order group counts. The first is part of the second where no photon was
+  /// stopped at its end.
+  int stage_of_group(int group) const;
   uint64_t exits_of_stage(int stage) const;
 
   /// Energy that left, per unit that entered, divided by the albedo: A(alpha)/alpha.
@@ -102,9 +121,6 @@ class PathTally {
   std::vector<uint64_t> stopped_ = std::vector<uint64_t>(WalkStages::count);
   uint64_t collisions_ = 0;
 };
-
-/// Stage in which an exit of that order group falls.
-int stage_of_group(int group);
 
 /// The tally read at one albedo: energy per radial bin, per unit that entered, divided by the albedo.
 std::vector<Estimate> radial_energy_over_albedo(const PathTally& tally, double albedo);

@@ -17,7 +17,7 @@ class LaneWalk : LaneState {
   LaneWalk(const WalkMedium& medium, uint64_t seed, uint64_t stream, uint64_t photons, PathTally& tally)
       : LaneState(seed, stream), medium_(medium), tally_(tally) {
     for (int stage = 0; stage < WalkStages::count; ++stage)
-      to_launch_[stage] = WalkStages::photons(stage, photons);
+      to_launch_[stage] = WalkStages().photons(stage, photons);
   }
 
   void run() {

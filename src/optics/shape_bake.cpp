@@ -158,14 +158,25 @@ WalkBody shape_body(ShapeFamily family, double size) {
 }
 
 BodyWalkOptions shape_walk_options(ShapeFamily family, double size, const ShapeBakeOptions& options) {
-  BodyWalkOptions walk{options.medium, options.photons, options.seed, WalkStages::count - 1};
-  if (family != ShapeFamily::cavity) return walk;
-  walk.photons = options.photons / 4;
-  // After n orders a photon is about sqrt(n) away and meets the cavity again with a chance of size / sqrt(n).
-  walk.last_stage = 2;
-  while (walk.last_stage < WalkStages::count - 1 &&
-         static_cast<double>(WalkStages::limit(walk.last_stage)) < 1e4 * size * size / (1 - options.medium.g))
-    ++walk.last_stage;
+  BodyWalkOptions walk{options.medium, options.photons, options.seed, {}};
+  const bool is_cavity = family == ShapeFamily::cavity;
+  // At low albedo and g near 1 little comes back, and all of it early; small balls and slabs return plenty.
+  if (is_cavity || size >= 4) {
+    walk.stages.first_thinning = 3;
+    walk.photons <<= 3;
+  }
+  if (!is_cavity) return walk;
+  // After n orders a photon is about sqrt(n / (1 - g)) away and meets the cavity again with a chance of its
+  // radius over that: until it is a radius away it leaves as from a half-space, then ever more seldom.
+  const double square = size * size;
+  const auto first_beyond = [](double orders) {
+    int stage = 1;
+    while (stage < WalkStages::count && static_cast<double>(WalkStages::limit(stage)) < orders) ++stage;
+    return stage;
+  };
+  walk.stages.quartered_from = first_beyond(square * (1 - options.medium.g));
+  walk.stages.last =
+      std::clamp(first_beyond(1e4 * square / (1 - options.medium.g)), 3, WalkStages::count - 1);
   return walk;
 }
 

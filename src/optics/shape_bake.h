@@ -10,7 +10,9 @@ namespace alabaster {
 
 struct ShapeBakeOptions {
   WalkMedium medium;
-  uint64_t photons = 250'000;  // per body; cavities, whose paths are the longest, get a quarter
+  /// Per body, followed beyond 15 collisions; of cavities and of what is larger than four mean free paths
+  /// eight times as many are up to there.
+  uint64_t photons = 125'000;
   uint64_t seed = 1;
 };
 
@@ -29,7 +31,7 @@ std::vector<double> shape_factors(ShapeFamily family, double size, double albedo
                                   const std::vector<Estimate>& energy, const ProfileTable& half_space,
                                   const std::vector<double>& before);
 
-/// How a body of that family is walked: cavities with fewer photons, and small ones not to the last order.
+/// How a body of that family is walked: which of its photons are followed how far.
 WalkBody shape_body(ShapeFamily family, double size);
 BodyWalkOptions shape_walk_options(ShapeFamily family, double size, const ShapeBakeOptions& options);
 

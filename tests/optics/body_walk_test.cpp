@@ -48,7 +48,7 @@ TEST_CASE("what enters a body leaves it, is stopped or is still inside") {
   for (const WalkBody body : {WalkBody::ball(2), WalkBody::cavity(3), WalkBody::slab(1)}) {
     BodyWalkOptions options;
     options.photons = 40000;
-    options.last_stage = 4;
+    options.stages.last = 5;
     const PathTally tally = body_tally(body, options);
     uint64_t stopped = 0;
     for (int stage = 0; stage < WalkStages::count; ++stage) stopped += tally.stopped(stage);
@@ -68,7 +68,7 @@ TEST_CASE("a body without curvature is the half-space") {
   // A(0.5) and A(0.9) of the baseline's table, whose own errors are far smaller.
   BodyWalkOptions options;
   options.photons = 200000;
-  options.last_stage = 3;
+  options.stages.last = 4;
   const PathTally tally = body_tally(WalkBody{}, options);
   for (const auto& [albedo, reflectance] : {std::pair{0.5, 0.02920}, {0.9, 0.18680}}) {
     const Estimate e = tally.reflectance_over_albedo(albedo);
@@ -93,7 +93,7 @@ TEST_CASE("light that balls and cavities return (independent simulations, z-test
     if (walked == nullptr || walked->curvature != row.body.curvature) {
       BodyWalkOptions options;
       options.photons = row.body.curvature > 0 ? 600000 : 100000;
-      options.last_stage = 4;
+      options.stages.last = 5;
       tally = body_tally(row.body, options);
       walked = &row.body;
     }
@@ -104,12 +104,47 @@ TEST_CASE("light that balls and cavities return (independent simulations, z-test
   }
 }
 
+TEST_CASE("which photons are followed how far changes no estimate, and errors are what they say") {
+  for (const WalkBody body : {WalkBody::cavity(2), WalkBody::ball(8)}) {
+    BodyWalkOptions options;
+    options.medium.g = 0.6;
+    options.stages.last = 4;
+    options.photons = 300000;
+    const PathTally plain = body_tally(body, options);
+    options.photons = 1;  // a chunk
+    options.stages.first_thinning = 3;
+    if (body.curvature < 0) options.stages.quartered_from = 1;
+    const std::array<double, 3> albedos{0.5, 0.9, 0.99};
+    std::array<double, 3> square{}, sum{}, variance{};
+    const int repetitions = 8;
+    for (int k = 0; k < repetitions; ++k) {
+      options.seed = static_cast<uint64_t>(100 + k);
+      const PathTally tally = body_tally(body, options);
+      for (std::size_t a = 0; a < albedos.size(); ++a) {
+        const Estimate e = tally.reflectance_over_albedo(albedos[a]);
+        sum[a] += e.value / repetitions;
+        variance[a] += e.standard_error * e.standard_error / repetitions;
+        square[a] += e.value * e.value / repetitions;
+      }
+    }
+    for (std::size_t a = 0; a < albedos.size(); ++a) {
+      INFO(body.curvature << " at " << albedos[a]);
+      const Estimate mean{sum[a], std::sqrt(variance[a] / repetitions)};
+      CHECK(std::abs(z_value(mean, plain.reflectance_over_albedo(albedos[a]))) < 4.2);  // 2e-4 over all
+      // The spread over the seeds: chi-square of 7 degrees between its 1e-4 quantiles.
+      const double spread = repetitions * (square[a] - sum[a] * sum[a]) / variance[a];
+      CHECK(spread > 0.49);
+      CHECK(spread < 29.9);
+    }
+  }
+}
+
 TEST_CASE("the vector lanes agree with the scalar walk in every body (z-tests, 1e-4 over all)") {
   const double limit = 4.9;  // 2 x 4 bodies x 4 albedos
   for (const WalkBody body : {WalkBody::ball(1), WalkBody::ball(8), WalkBody::cavity(2), WalkBody::slab(2)}) {
     BodyWalkOptions options;
     options.photons = 65536;
-    options.last_stage = 2;
+    options.stages.last = 3;
     const PathTally scalar = body_tally_scalar(body, options);
     options.photons = 262144;
     options.seed = 2;
